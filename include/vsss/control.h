@@ -1,0 +1,46 @@
+// One team at its own rate: observe -> policy -> wheels. The only path from a world to a wheel, the same in
+// simulation and on the field.
+#ifndef VSSS_CONTROL_H
+#define VSSS_CONTROL_H
+
+#include "vsss/observe.h"
+#include "vsss/policy.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct vs_control vs_control;
+
+// Takes the player over (closes it in vs_control_free). player NULL: an external team, whose actions the caller gives
+// with vs_control_set_action and whose observations it reads with vs_control_observation.
+vs_status vs_control_new(vs_player *player, vs_control **out, vs_error *err);
+void vs_control_free(vs_control *control);
+
+// Start of a match or an episode: forgets the past, reseeds the player. shuffle_adversaries: training's random order.
+vs_status vs_control_reset(vs_control *control, uint64_t seed, bool shuffle_adversaries, vs_error *err);
+// After the referee placed the robots: history starts anew, the player goes on.
+void vs_control_restart(vs_control *control);
+
+// Called for every camera frame with the measured absolute world and game. Lets the player decide when its rate says
+// so (the first call decides) and writes the wheels to apply until the next call. decided (may be NULL) tells whether
+// this frame was a decision.
+vs_status vs_control_step(vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game, double dt_s,
+                          vs_wheels out[VS_TEAM_SIZE], bool *decided, vs_error *err);
+
+// External teams: observe (push a frame at a decision time), read, act.
+void vs_control_observe(vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game);
+vs_status vs_control_set_action(vs_control *control, const float *action /* [3][2] */, vs_error *err);
+
+const vs_observer *vs_control_observer(const vs_control *control);
+const float *vs_control_action(const vs_control *control); // the last, [3][2] in [-1, 1]
+vs_player *vs_control_player(vs_control *control);         // NULL for an external team
+
+size_t vs_control_state_size(const vs_control *control); // 0: cannot be snapshotted
+void vs_control_save(const vs_control *control, void *state);
+void vs_control_restore(vs_control *control, const void *state);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

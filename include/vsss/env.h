@@ -1,0 +1,68 @@
+// One match: simulator + sensors + referee + two teams, frame by frame (1/30 s) or decision by decision (1/10 s).
+#ifndef VSSS_ENV_H
+#define VSSS_ENV_H
+
+#include "vsss/control.h"
+#include "vsss/referee.h"
+#include "vsss/reward.h"
+#include "vsss/sensor_model.h"
+#include "vsss/sim.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct vs_env vs_env;
+
+typedef struct vs_env_def {
+  const vs_model *model;        // shared, outlives the env
+  const char *player[VS_TEAMS]; // URI, or NULL: an external team whose actions the caller gives
+  vs_referee_def referee;
+  vs_realism realism;
+  bool shuffle_adversaries; // training
+} vs_env_def;
+
+vs_env_def vs_env_def_default(const vs_model *model); // paper rules, paper noise, 120 s, both teams external
+
+vs_status vs_env_new(const vs_env_def *def, vs_env **out, vs_error *err);
+void vs_env_free(vs_env *env);
+
+// A new match from this seed: everything that follows is a function of the seed and of external actions.
+vs_status vs_env_reset(vs_env *env, uint64_t seed, vs_error *err);
+
+// One camera frame. event (may be NULL): what the referee said after it; the pieces have already been placed anew.
+vs_status vs_env_frame(vs_env *env, vs_event *event, vs_error *err);
+
+// One decision: frames until the next decision tick. Between a restart and the next decision tick the frame count
+// starts anew, so that the first frame after a placement is a decision.
+typedef struct vs_env_result {
+  vs_event event;  // the most important of the decision (goal > penalty > others), absolute frame
+  bool over;       // the match or episode ended
+  bool time_limit; // ... by its clock, not by a goal: bootstrap the value
+  double terms[VS_TEAMS][VS_TEAM_SIZE][VS_REWARD_TERMS];
+} vs_env_result;
+vs_status vs_env_step(vs_env *env, vs_env_result *result, vs_error *err);
+
+// External teams: float[3][2] action, held until replaced; float[3][464] observation of the present decision tick.
+vs_status vs_env_set_action(vs_env *env, vs_team team, const float *action, vs_error *err);
+void vs_env_observation(const vs_env *env, vs_team team, float *out);
+// Swap the player of a team; takes effect at the next reset.
+vs_status vs_env_set_player(vs_env *env, vs_team team, const char *uri, vs_error *err);
+
+bool vs_env_over(const vs_env *env);
+void vs_env_truth(const vs_env *env, vs_world *out);
+void vs_env_measured(const vs_env *env, vs_world *out); // what both teams saw last
+void vs_env_wheels(const vs_env *env, vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]);
+const vs_game *vs_env_game(const vs_env *env);
+vs_control *vs_env_control(vs_env *env, vs_team team);
+vs_sim *vs_env_sim(vs_env *env);
+uint64_t vs_env_hash(const vs_env *env); // of all true worlds since the reset
+
+size_t vs_env_state_size(const vs_env *env); // 0: a player that cannot be snapshotted
+void vs_env_save(const vs_env *env, void *state);
+void vs_env_restore(vs_env *env, const void *state);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

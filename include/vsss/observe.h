@@ -1,0 +1,38 @@
+// World -> floats and floats -> wheels, pure, the same object file in simulation and on the field.
+#ifndef VSSS_OBSERVE_H
+#define VSSS_OBSERVE_H
+
+#include "vsss/contract.h"
+#include "vsss/world.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// One frame of each robot of a team: out float[VS_TEAM_SIZE][VS_OBS_FRAME]. view is the measured world in team view,
+// last_action float[VS_TEAM_SIZE][2] what this team last commanded, in [-1, 1]. adversary_order[k] is the robot index
+// shown in adversary slot k (a permutation of 0..2; NULL: 0, 1, 2).
+void vs_observe_frame(const vs_world *view, const vs_game *game, const float *last_action, const int *adversary_order,
+                      float *out);
+
+// The stack of the last VS_OBS_STACK frames of one team. Plain data: a copy is a snapshot.
+typedef struct vs_observer {
+  int newest; // ring position of the newest frame
+  int filled; // 0: the next frame fills the whole stack
+  int adversary_order[VS_TEAM_SIZE];
+  float frame[VS_OBS_STACK][VS_TEAM_SIZE][VS_OBS_FRAME];
+} vs_observer;
+
+void vs_observer_init(vs_observer *observer, const int *adversary_order /* or NULL */);
+void vs_observer_restart(vs_observer *observer); // after a (re)start of play: keeps the order, forgets the frames
+void vs_observer_push(vs_observer *observer, const vs_world *view, const vs_game *game, const float *last_action);
+void vs_observer_write(const vs_observer *observer, float *out /* [VS_TEAM_SIZE][VS_OBS_SIZE], oldest frame first */);
+
+// Action in [-1, 1] <-> rad/s. A value that is not finite is VS_FAIL naming robot and wheel; others are clamped.
+vs_status vs_action_to_wheels(const float *action /* [3][2] */, vs_wheels out[VS_TEAM_SIZE], vs_error *err);
+void vs_action_from_wheels(const vs_wheels wheels[VS_TEAM_SIZE], float *action);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

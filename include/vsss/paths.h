@@ -1,0 +1,24 @@
+// Where the program's own files lie: beside the executable in a checkout, under PREFIX/share/vsss when installed.
+#ifndef VSSS_PATHS_H
+#define VSSS_PATHS_H
+
+#include <stddef.h>
+
+#include "vsss/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Writes the path of a file of ours, such as "models/vsss_contact.xml". Looked for in $VSSS_HOME, the executable's
+// folder and its parent, then the install prefix. VS_FAIL names every place tried.
+vs_status vs_path_find(const char *relative, char *out, size_t out_size, vs_error *err);
+
+// Loads build/lib/vsss_NAME.so, one of the modules that cost start-up time (opencv, torch, mpi), and returns its
+// handle for dlsym. VS_FAIL says which Debian package to install and to run make again.
+vs_status vs_module_load(const char *name, const char *debian_package, void **handle, vs_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,56 @@
+// Players by URI: `emc:`, `inf:`, `emc22:`, `random:`, `zero:`, `onnx:FILE`, `plugin:FILE.so`, and what the program
+// registers (`lcm:`). A player either sees the world (scripted) or an observation (learned).
+#ifndef VSSS_POLICY_H
+#define VSSS_POLICY_H
+
+#include <stdint.h>
+
+#include "vsss/contract.h"
+#include "vsss/player.h"
+#include "vsss/status.h"
+#include "vsss/world.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct vs_player vs_player;
+
+typedef enum vs_player_sees { VS_SEES_WORLD, VS_SEES_OBSERVATION } vs_player_sees;
+
+// Opens a player. VS_USAGE: unknown scheme (the text lists the known ones); VS_FAIL: its file cannot be used.
+vs_status vs_player_open(const char *uri, vs_player **out, vs_error *err);
+void vs_player_close(vs_player *player); // NULL is allowed
+
+vs_player_sees vs_player_kind(const vs_player *player);
+double vs_player_rate_hz(const vs_player *player);
+const char *vs_player_uri(const vs_player *player);
+const char *vs_player_name(const vs_player *player);
+
+// Start of a match: forget everything, draw from this seed.
+vs_status vs_player_reset(vs_player *player, uint64_t seed, vs_error *err);
+
+// VS_SEES_WORLD players. A command that is not finite is VS_FAIL, naming player, robot and value.
+vs_status vs_player_step(vs_player *player, const vs_world *view, const vs_game *game, double dt_s,
+                         vs_wheels out[VS_TEAM_SIZE], vs_error *err);
+
+// VS_SEES_OBSERVATION players: obs float[rows][VS_OBS_SIZE] -> action float[rows][VS_ACTION_SIZE] in [-1, 1].
+// Always evaluated in batches of VS_TEAM_SIZE rows, so that a result never depends on how many matches share a call.
+vs_status vs_player_act(vs_player *player, const float *obs, int rows, float *action, vs_error *err);
+
+// Snapshots. Size 0: this player cannot be snapshotted.
+size_t vs_player_state_size(const vs_player *player);
+void vs_player_save(const vs_player *player, void *state);
+void vs_player_restore(vs_player *player, const void *state);
+
+// A scheme that needs another module (lcm:). open gets the text after the colon and returns an api and the options
+// its init will get (a static string or one that outlives the player).
+typedef vs_status (*vs_player_provider)(const char *rest, const vsss_player_api **api, const char **options,
+                                        vs_error *err);
+void vs_player_register(const char *scheme, const char *help, vs_player_provider open);
+const char *vs_player_schemes(void); // "emc: inf: ..." for messages and --help
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,67 @@
+// The simulator: MuJoCo with one constant model shared by all matches and one state each. Knows nothing of rules.
+#ifndef VSSS_SIM_H
+#define VSSS_SIM_H
+
+#include <stddef.h>
+
+#include "vsss/world.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// CONTACT: free bodies on wheels that roll by friction (the reference). PLANAR: joints x, y, yaw per robot and a
+// traction law outside MuJoCo (the fast twin).
+typedef enum vs_drive { VS_DRIVE_CONTACT, VS_DRIVE_PLANAR } vs_drive;
+const char *vs_drive_name(vs_drive drive); // "contact", "planar"
+vs_status vs_drive_parse(const char *name, vs_drive *out, vs_error *err);
+
+typedef struct vs_model vs_model; // constant after loading, shared by threads
+
+typedef struct vs_model_def {
+  vs_drive drive;
+  const char *path;       // MJCF; NULL: models/vsss_<drive>.xml found by vs_path_find
+  int substeps_per_frame; // physics steps per 1/30 s camera frame; 0: the drive's default
+} vs_model_def;
+
+vs_model_def vs_model_def_default(vs_drive drive);
+// Loads the MJCF and checks every size against field.h: a difference is VS_FAIL naming body, value and the expected one.
+vs_status vs_model_load(const vs_model_def *def, vs_model **out, vs_error *err);
+void vs_model_free(vs_model *model);
+double vs_model_step_s(const vs_model *model);
+int vs_model_substeps(const vs_model *model);
+vs_drive vs_model_drive(const vs_model *model);
+const void *vs_model_mjmodel(const vs_model *model); // const mjModel *, for the renderer and the benchmarks
+
+// Physical parameters of one episode (domain randomisation); the default is the nominal robot.
+typedef struct vs_sim_params {
+  double wheel_gain[VS_TEAMS][VS_TEAM_SIZE][2]; // left, right: reached speed / commanded speed; 1
+  double wheel_limit_scale;                     // battery: scales VS_WHEEL_LIMIT_RADPS; 1
+  double motor_tau_s;                           // extra first-order lag of the wheel command; 0 = none
+  double dead_zone_radps;                       // commands below this do nothing; 0
+  double floor_friction_scale;                  // 1
+  double robot_mass_scale;                      // 1
+  double ball_mass_scale, ball_rolling_scale;   // 1, 1
+} vs_sim_params;
+vs_sim_params vs_sim_params_default(void);
+
+typedef struct vs_sim vs_sim; // one match's state
+vs_status vs_sim_new(const vs_model *model, vs_sim **out, vs_error *err);
+void vs_sim_free(vs_sim *sim);
+void vs_sim_reset(vs_sim *sim,
+                  const vs_sim_params *params /* NULL: default */); // time 0, everything at rest, kick-off line
+// Puts robots and ball where world says, at rest; wheels stopped. Time goes on. No allocation, under 50 us.
+void vs_sim_place(vs_sim *sim, const vs_world *world);
+// One camera frame (1/30 s) with the commands held. VS_FAIL: MuJoCo reported a warning (NaN, too many contacts), by name.
+vs_status vs_sim_frame(vs_sim *sim, const vs_wheels command[VS_TEAMS][VS_TEAM_SIZE], vs_error *err);
+void vs_sim_world(const vs_sim *sim, vs_world *out); // the truth
+void *vs_sim_mjdata(vs_sim *sim);                    // mjData *, for the renderer
+
+size_t vs_sim_state_size(const vs_sim *sim);
+void vs_sim_save(const vs_sim *sim, void *state);
+void vs_sim_restore(vs_sim *sim, const void *state); // continues bit-identically
+
+#ifdef __cplusplus
+}
+#endif
+#endif

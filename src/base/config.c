@@ -1,0 +1,171 @@
+#include "vsss/config.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int edit_distance(const char *a, const char *b) {
+  size_t n = strlen(a), m = strlen(b);
+  int row[128];
+  if (m >= sizeof row / sizeof *row) return 1000;
+  for (size_t j = 0; j <= m; j++) row[j] = (int)j;
+  for (size_t i = 1; i <= n; i++) {
+    int diagonal = row[0];
+    row[0] = (int)i;
+    for (size_t j = 1; j <= m; j++) {
+      int up = row[j];
+      int best = diagonal + (a[i - 1] != b[j - 1]);
+      if (up + 1 < best) best = up + 1;
+      if (row[j - 1] + 1 < best) best = row[j - 1] + 1;
+      row[j] = best;
+      diagonal = up;
+    }
+  }
+  return row[m];
+}
+
+static const vs_config_key *nearest(const char *name, const vs_config_key *schema) {
+  const vs_config_key *best = NULL;
+  int best_distance = 1 << 20;
+  for (const vs_config_key *k = schema; k->name; k++) {
+    int d = edit_distance(name, k->name);
+    if (d < best_distance) best_distance = d, best = k;
+  }
+  return best;
+}
+
+static char *trim(char *text) {
+  while (isspace((unsigned char)*text)) text++;
+  size_t n = strlen(text);
+  while (n && isspace((unsigned char)text[n - 1])) text[--n] = '\0';
+  return text;
+}
+
+static bool limited(const vs_config_key *k) { return k->min != 0.0 || k->max != 0.0; }
+
+static vs_status store_number(const char *where, const vs_config_key *k, const char *value, vs_error *err) {
+  char *end;
+  errno = 0;
+  double number = strtod(value, &end);
+  bool whole = k->type == VS_CONFIG_INT;
+  if (end == value || *end || errno || !isfinite(number) || (whole && (number != floor(number) || fabs(number) > 2e9)))
+    return vs_fail(err, VS_USAGE, "%s: %s = %s: expected a %s", where, k->name, value,
+                   whole ? "whole number" : "number");
+  if (limited(k) && (number < k->min || number > k->max))
+    return vs_fail(err, VS_USAGE, "%s: %s = %s: allowed are %g to %g", where, k->name, value, k->min, k->max);
+  if (whole)
+    *(int *)k->target = (int)number;
+  else
+    *(double *)k->target = number;
+  return VS_OK;
+}
+
+static vs_status store(const char *where, const char *name, const char *value, const vs_config_key *schema,
+                       vs_error *err) {
+  const vs_config_key *k = schema;
+  while (k->name && strcmp(k->name, name) != 0) k++;
+  if (!k->name) {
+    const vs_config_key *near = nearest(name, schema);
+    return vs_fail(err, VS_USAGE, "%s: unknown key '%s' (did you mean '%s'?)", where, name, near ? near->name : "?");
+  }
+  switch (k->type) {
+  case VS_CONFIG_INT:
+  case VS_CONFIG_REAL: return store_number(where, k, value, err);
+  case VS_CONFIG_BOOL:
+    if (!strcmp(value, "true") || !strcmp(value, "yes") || !strcmp(value, "on") || !strcmp(value, "1"))
+      *(bool *)k->target = true;
+    else if (!strcmp(value, "false") || !strcmp(value, "no") || !strcmp(value, "off") || !strcmp(value, "0"))
+      *(bool *)k->target = false;
+    else
+      return vs_fail(err, VS_USAGE, "%s: %s = %s: expected true or false", where, name, value);
+    return VS_OK;
+  case VS_CONFIG_TEXT:
+    if (strlen(value) >= k->text_size)
+      return vs_fail(err, VS_USAGE, "%s: %s: longer than %zu characters", where, name, k->text_size - 1);
+    memcpy(k->target, value, strlen(value) + 1);
+    return VS_OK;
+  }
+  return vs_fail(err, VS_FAIL, "%s: %s: unknown type in the schema", where, name);
+}
+
+static vs_status parse_line(const char *file, int number, char *line, char *section, size_t section_size,
+                            const vs_config_key *schema, vs_error *err) {
+  char where[300];
+  snprintf(where, sizeof where, "%.256s:%d", file, number);
+  char *comment = strpbrk(line, "#;");
+  if (comment) *comment = '\0';
+  char *text = trim(line);
+  if (!*text) return VS_OK;
+  if (*text == '[') {
+    char *close = strchr(text, ']');
+    if (!close || close[1]) return vs_fail(err, VS_USAGE, "%s: '%s': expected [section]", where, text);
+    *close = '\0';
+    snprintf(section, section_size, "%s", trim(text + 1));
+    return VS_OK;
+  }
+  char *equals = strchr(text, '=');
+  if (!equals) return vs_fail(err, VS_USAGE, "%s: '%s': expected key = value", where, text);
+  *equals = '\0';
+  char name[200];
+  snprintf(name, sizeof name, "%.90s%s%.90s", section, *section ? "." : "", trim(text));
+  return store(where, name, trim(equals + 1), schema, err);
+}
+
+vs_status vs_config_parse(const char *name_for_errors, const char *text, const vs_config_key *schema, vs_error *err) {
+  char section[96] = "";
+  int number = 0;
+  while (*text) {
+    size_t n = strcspn(text, "\n");
+    char line[1024];
+    number++;
+    if (n >= sizeof line)
+      return vs_fail(err, VS_USAGE, "%s:%d: line longer than %zu characters", name_for_errors, number, sizeof line - 1);
+    memcpy(line, text, n);
+    line[n] = '\0';
+    vs_status s = parse_line(name_for_errors, number, line, section, sizeof section, schema, err);
+    if (s != VS_OK) return s;
+    text += n + (text[n] == '\n');
+  }
+  return VS_OK;
+}
+
+vs_status vs_config_load(const char *path, const vs_config_key *schema, vs_error *err) {
+  FILE *f = fopen(path, "rb");
+  if (!f) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
+  char *text = NULL;
+  size_t used = 0, size = 0;
+  for (;;) {
+    if (used + 4096 > size) {
+      size = size ? 2 * size : 8192;
+      char *grown = realloc(text, size);
+      if (!grown) {
+        free(text);
+        fclose(f);
+        return vs_fail(err, VS_FAIL, "%s: out of memory", path);
+      }
+      text = grown;
+    }
+    size_t n = fread(text + used, 1, size - used - 1, f);
+    used += n;
+    if (n == 0) break;
+  }
+  int failed = ferror(f);
+  fclose(f);
+  text[used] = '\0';
+  vs_status s =
+      failed ? vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno)) : vs_config_parse(path, text, schema, err);
+  free(text);
+  return s;
+}
+
+vs_status vs_config_set(const char *assignment, const vs_config_key *schema, vs_error *err) {
+  char copy[512];
+  snprintf(copy, sizeof copy, "%s", assignment);
+  char *equals = strchr(copy, '=');
+  if (!equals) return vs_fail(err, VS_USAGE, "'%s': expected key=value", assignment);
+  *equals = '\0';
+  return store("command line", trim(copy), trim(equals + 1), schema, err);
+}

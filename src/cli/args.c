@@ -1,0 +1,99 @@
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+
+static void print_default(const vs_flag *f) {
+  if (f->type == VS_FLAG_INT) printf(" [%d]", *(const int *)f->target);
+  if (f->type == VS_FLAG_REAL) printf(" [%g]", *(const double *)f->target);
+  if (f->type == VS_FLAG_TEXT && *(const char *const *)f->target) printf(" [%s]", *(const char *const *)f->target);
+}
+
+static void print_help(const char *synopsis, const char *about, const vs_flag *flags) {
+  printf("usage: vsss %s\n\n%s\n", synopsis, about);
+  if (flags->name) printf("\n");
+  for (const vs_flag *f = flags; f->name; f++) {
+    char left[64];
+    snprintf(left, sizeof left, "--%s%s%s", f->name, f->value_name ? " " : "", f->value_name ? f->value_name : "");
+    printf("  %-24s %s", left, f->help);
+    print_default(f);
+    printf("\n");
+  }
+  printf("  %-24s %s\n", "--help", "this text");
+}
+
+static const vs_flag *find(const vs_flag *flags, const char *name, size_t length) {
+  for (const vs_flag *f = flags; f->name; f++)
+    if (strlen(f->name) == length && strncmp(f->name, name, length) == 0) return f;
+  return NULL;
+}
+
+static vs_status store_number(const vs_flag *f, const char *value, vs_error *err) {
+  char *end;
+  errno = 0;
+  double number = strtod(value, &end);
+  bool whole = f->type == VS_FLAG_INT;
+  if (end == value || *end || errno || !isfinite(number) ||
+      (whole && (number != floor(number) || fabs(number) > 2147483647.0)))
+    return vs_fail(err, VS_USAGE, "--%s %s: expected a %s", f->name, value, whole ? "whole number" : "number");
+  if ((f->min != 0.0 || f->max != 0.0) && (number < f->min || number > f->max))
+    return vs_fail(err, VS_USAGE, "--%s %s: allowed are %g to %g", f->name, value, f->min, f->max);
+  if (whole)
+    *(int *)f->target = (int)number;
+  else
+    *(double *)f->target = number;
+  return VS_OK;
+}
+
+static vs_status store(const vs_flag *f, const char *value, vs_error *err) {
+  switch (f->type) {
+  case VS_FLAG_INT:
+  case VS_FLAG_REAL: return store_number(f, value, err);
+  case VS_FLAG_TEXT: *(const char **)f->target = value; return VS_OK;
+  case VS_FLAG_LIST: {
+    vs_flag_list *list = f->target;
+    if (list->count == VS_FLAG_LIST_MAX)
+      return vs_fail(err, VS_USAGE, "--%s: given more than %d times", f->name, VS_FLAG_LIST_MAX);
+    list->value[list->count++] = value;
+    return VS_OK;
+  }
+  case VS_FLAG_SWITCH: break;
+  }
+  *(bool *)f->target = true;
+  return VS_OK;
+}
+
+vs_status vs_args_parse(int argc, char **argv, const char *synopsis, const char *about, const vs_flag *flags,
+                        vs_flag_list *positional, bool *help, vs_error *err) {
+  *help = false;
+  for (int i = 1; i < argc; i++) {
+    const char *word = argv[i];
+    if (!strcmp(word, "--help") || !strcmp(word, "-h")) {
+      print_help(synopsis, about, flags);
+      *help = true;
+      return VS_OK;
+    }
+    if (word[0] != '-' || word[1] != '-') {
+      if (!positional || word[0] == '-') return vs_fail(err, VS_USAGE, "'%s' is not expected here; see --help", word);
+      if (positional->count == VS_FLAG_LIST_MAX) return vs_fail(err, VS_USAGE, "more than %d words", VS_FLAG_LIST_MAX);
+      positional->value[positional->count++] = word;
+      continue;
+    }
+    const char *name = word + 2;
+    size_t length = strcspn(name, "=");
+    const vs_flag *f = find(flags, name, length);
+    if (!f) return vs_fail(err, VS_USAGE, "unknown flag '%s'; see --help", word);
+    const char *value = name[length] ? name + length + 1 : NULL;
+    if (f->type == VS_FLAG_SWITCH && value) return vs_fail(err, VS_USAGE, "--%s takes no value", f->name);
+    if (f->type != VS_FLAG_SWITCH && !value) {
+      if (i + 1 == argc) return vs_fail(err, VS_USAGE, "--%s needs a value (%s)", f->name, f->value_name);
+      value = argv[++i];
+    }
+    vs_status s = store(f, value, err);
+    if (s != VS_OK) return s;
+  }
+  return VS_OK;
+}

@@ -1,0 +1,50 @@
+// What a command of the program is. One command: one row in src/cli/main.c and one file src/cli/cmd_NAME.c.
+#ifndef VSSS_CLI_CLI_H
+#define VSSS_CLI_CLI_H
+
+#include <stdbool.h>
+
+#include "vsss/status.h"
+
+typedef enum vs_flag_type { VS_FLAG_SWITCH, VS_FLAG_INT, VS_FLAG_REAL, VS_FLAG_TEXT, VS_FLAG_LIST } vs_flag_type;
+
+// One flag of a command. target: bool, int, double, const char * (pointing into argv), or vs_flag_list (repeatable).
+// Numbers outside [min, max] are refused with the range (min == max == 0: no limits). The present value of target is
+// shown as the default.
+typedef struct vs_flag {
+  const char *name; // without the dashes
+  vs_flag_type type;
+  void *target;
+  const char *value_name; // "URI", "FILE", ... ; NULL for a switch
+  const char *help;
+  double min, max;
+} vs_flag;
+
+#define VS_FLAG_LIST_MAX 64
+typedef struct vs_flag_list {
+  int count;
+  const char *value[VS_FLAG_LIST_MAX];
+} vs_flag_list;
+
+// Parses argv[1..] against flags (ended by a NULL name). Words that are no flags go to positional (NULL: none are
+// allowed). --help prints usage, synopsis and the flags, and sets *help: the command returns 0 at once.
+vs_status vs_args_parse(int argc, char **argv, const char *synopsis, const char *about, const vs_flag *flags,
+                        vs_flag_list *positional, bool *help, vs_error *err);
+
+// Prints "vsss COMMAND: text" on stderr and returns the exit status that belongs to it.
+int vs_cli_error(const char *command, const vs_error *err);
+
+// Set by SIGINT and SIGTERM once vs_cli_catch_interrupts was called; a second signal ends the program at once.
+void vs_cli_catch_interrupts(void);
+bool vs_cli_interrupted(void);
+
+// One line that rewrites itself on a terminal: bar, fraction, time left, then text. Silent where stderr is no terminal.
+typedef struct vs_progress {
+  long long start_us, last_us;
+  bool terminal;
+} vs_progress;
+void vs_progress_start(vs_progress *progress);
+void vs_progress_show(vs_progress *progress, double fraction, const char *text);
+void vs_progress_clear(vs_progress *progress);
+
+#endif

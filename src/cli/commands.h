@@ -1,0 +1,5 @@
+// The commands: int cmd_NAME(int argc, char **argv), argv[0] is the command's name. Returns the exit status.
+#ifndef VSSS_CLI_COMMANDS_H
+#define VSSS_CLI_COMMANDS_H
+
+#endif

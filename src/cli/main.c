@@ -1,0 +1,37 @@
+// The command table. A command is one row here and one file cmd_NAME.c.
+#include <stdio.h>
+#include <string.h>
+
+#include "commands.h"
+#include "cli.h"
+
+typedef struct command {
+  const char *name;
+  int (*run)(int argc, char **argv);
+  const char *help;
+} command;
+
+static const command commands[] = {
+    {NULL, NULL, NULL},
+};
+
+static void print_commands(FILE *out) {
+  fprintf(out, "usage: vsss COMMAND [flags]\n\nIEEE Very Small Size Soccer: simulate, learn, play on the field.\n\n");
+  for (const command *c = commands; c->name; c++) fprintf(out, "  %-12s %s\n", c->name, c->help);
+  fprintf(out, "\n'vsss COMMAND --help' tells the flags of one.\n");
+}
+
+int main(int argc, char **argv) {
+  if (argc < 2) {
+    print_commands(stderr);
+    return VS_USAGE;
+  }
+  if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h") || !strcmp(argv[1], "help")) {
+    print_commands(stdout);
+    return 0;
+  }
+  for (const command *c = commands; c->name; c++)
+    if (!strcmp(argv[1], c->name)) return c->run(argc - 1, argv + 1);
+  fprintf(stderr, "vsss: unknown command '%s'; 'vsss --help' lists them\n", argv[1]);
+  return VS_USAGE;
+}
