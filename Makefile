@@ -2,6 +2,7 @@
 # Sources are found by folder: src/<module>/*.c go into the program, src/<module>/*.cpp are shims built as modules
 # (build/lib/vsss_NAME.so) that a command loads when it needs them. FLAVOUR=asan|tsan builds beside, not over.
 
+.DEFAULT_GOAL := all
 FLAVOUR ?= plain
 B := build/$(FLAVOUR)
 PREFIX ?= /usr/local
@@ -32,11 +33,13 @@ LIB_SRC := $(filter-out src/cli/main.c,$(LIB_SRC))
 LIB_OBJ := $(LIB_SRC:%.c=$(B)/%.o) $(FEATURE_OBJ)
 MAIN_OBJ := $(B)/src/cli/main.o
 TEST_SRC := $(wildcard tests/*/test_*.c)
+BENCH_BIN := $(patsubst %.c,$(B)/%,$(wildcard tests/bench/bench_*.c))
 TEST_BIN := $(TEST_SRC:%.c=$(B)/%)
 VSSS := $(if $(filter plain,$(FLAVOUR)),vsss,$(B)/vsss)
 
 .PHONY: all test asan tsan lint bench clean install help features tests
 all: features $(VSSS) $(MODULES) $(EXTRA_ALL)
+
 
 help:
 	@echo "make           build ./vsss"
@@ -53,14 +56,14 @@ $(B)/libvsss.a: $(LIB_OBJ)
 	@rm -f $@
 	ar rcs $@ $(LIB_OBJ)
 
-$(B)/%.o: %.c $(GENERATED) | build/features
+$(B)/%.o: %.c build/features.mk | $(GENERATED)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) $(CFLAGS_$(notdir $*)) -MMD -MP -c -o $@ $<
+	$(CC) $(CFLAGS_ALL) -MMD -MP -c -o $@ $<
 
 # Tests: one binary per file, linked with everything.
-$(B)/tests/%: tests/%.c $(B)/libvsss.a $(GENERATED)
+$(B)/tests/%: tests/%.c $(B)/libvsss.a
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) -Itests -rdynamic -MMD -MP -MF $@.d -o $@ $< -Wl,--whole-archive $(B)/libvsss.a -Wl,--no-whole-archive -lcmocka $(LDLIBS_ALL) $(TEST_LIBS_$(notdir $*))
+	$(CC) $(CFLAGS_ALL) -Itests -rdynamic -MMD -MP -MF $@.d -o $@ $< -Wl,--whole-archive $(B)/libvsss.a -Wl,--no-whole-archive -lcmocka $(LDLIBS_ALL) -lz
 
 tests: all $(TEST_BIN) $(EXTRA_TESTS)
 
@@ -75,10 +78,26 @@ tsan:
 lint:
 	@sh tests/lint/run.sh
 
-bench: all
-	@sh tests/bench/run.sh $(N)
+# N=what runs one of tests/bench/bench_what.c.
+bench: all $(BENCH_BIN)
+	@sh tests/bench/run.sh $(B) $(N)
 
 clean:
 	rm -rf build vsss
 
--include $(LIB_OBJ:.o=.d) $(MAIN_OBJ:.o=.d) $(TEST_BIN:=.d)
+# ./vsss, the modules, the models and the C library for other trainers and plugins.
+install: all $(B)/libvsss.so
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/pkgconfig $(DESTDIR)$(PREFIX)/include/vsss $(DESTDIR)$(PREFIX)/share/vsss/build/lib
+	install vsss $(DESTDIR)$(PREFIX)/bin/vsss
+	install -m 644 $(B)/libvsss.so $(DESTDIR)$(PREFIX)/lib/libvsss.so
+	install -m 644 include/vsss/*.h $(DESTDIR)$(PREFIX)/include/vsss
+	cp -r models deploy lcm_types $(DESTDIR)$(PREFIX)/share/vsss
+	$(if $(MODULES),install -m 644 $(MODULES) $(DESTDIR)$(PREFIX)/share/vsss/build/lib)
+	@if [ -d build/onnxruntime ]; then cp -r build/onnxruntime $(DESTDIR)$(PREFIX)/share/vsss/build; fi
+	printf 'prefix=%s\nName: vsss\nDescription: IEEE VSSS simulator, environments and players\nVersion: 1\nCflags: -I$${prefix}/include\nLibs: -L$${prefix}/lib -lvsss\nLibs.private: %s\n' \
+	  '$(PREFIX)' '$(LDLIBS_ALL)' > $(DESTDIR)$(PREFIX)/lib/pkgconfig/vsss.pc
+
+$(B)/libvsss.so: $(B)/libvsss.a
+	$(CC) $(SAN) -shared -o $@ -Wl,--whole-archive $(B)/libvsss.a -Wl,--no-whole-archive $(LDLIBS_ALL)
+
+-include $(LIB_OBJ:.o=.d) $(MAIN_OBJ:.o=.d) $(TEST_BIN:=.d) $(BENCH_BIN:=.d)

@@ -1,9 +1,82 @@
-# What this machine has. Sets FEATURE_CFLAGS, FEATURE_LIBS, FEATURE_EXCLUDE (sources left out), FEATURE_OBJ, MODULES
-# (C++ or heavy shims built as build/lib/vsss_NAME.so), GENERATED (headers made before compiling).
-exists = $(wildcard $(firstword $(wildcard $(addsuffix /$(1),/usr/include /usr/local/include))))
+# What follows from what this machine has (deploy/probe.sh). A source that needs a missing library is left out and its
+# twin *_stub.c, which says what to install, is built in its place. Heavy libraries (OpenCV, torch, MPI) are only in
+# modules, build/lib/vsss_NAME.so, which a command loads when it needs them.
+$(shell sh deploy/probe.sh build)
+include build/features.mk
 
+FEATURE_CFLAGS :=
 FEATURE_LIBS := -lmujoco
+FEATURE_EXCLUDE :=
+FEATURE_OBJ :=
+GENERATED :=
+MODULES :=
+EXTRA_ALL :=
 
-build/features:
-	@mkdir -p build && touch $@
-features: build/features
+# $(call choose,NAME,real.c): builds real.c where the feature is there, real_stub.c where it is not.
+choose = $(if $(HAVE_$(1)),$(2:.c=_stub.c),$(2))
+
+# LCM: lcm_types/NAME.lcm holds struct NAME of package vsss; lcm-gen makes build/gen/lcm/vsss_NAME.{c,h}.
+FEATURE_EXCLUDE += $(call choose,LCM,src/comms/bus.c)
+ifneq ($(HAVE_LCM),)
+LCM_TYPES := $(wildcard lcm_types/*.lcm)
+LCM_NAMES := $(LCM_TYPES:lcm_types/%.lcm=vsss_%)
+FEATURE_LIBS += -llcm
+FEATURE_OBJ += $(LCM_NAMES:%=$(B)/gen/lcm/%.o)
+GENERATED += $(if $(LCM_TYPES),build/gen/lcm/.made)
+build/gen/lcm/.made: $(LCM_TYPES)
+	@mkdir -p $(@D)
+	lcm-gen -c --c-cpath $(@D) --c-hpath $(@D) $(LCM_TYPES)
+	@touch $@
+$(LCM_NAMES:%=build/gen/lcm/%.c): build/gen/lcm/.made ;
+# Generated code is not clean under -Wextra, and is not ours to mend.
+$(B)/gen/lcm/%.o: build/gen/lcm/%.c
+	@mkdir -p $(@D)
+	$(CC) -std=gnu11 -w $(OPT) -fPIC $(SAN) -c -o $@ $<
+$(B)/src/comms/bus.o: build/gen/lcm/.made
+endif
+
+# AprilTag: the image and matrix helpers are in a second library that pkg-config does not name.
+FEATURE_EXCLUDE += $(call choose,APRILTAG,src/vision/detect_tags.c)
+FEATURE_LIBS += $(if $(HAVE_APRILTAG),-lapriltag -lapriltag-utils)
+
+# EGL: the renderer.
+FEATURE_EXCLUDE += $(call choose,EGL,src/sim/render.c)
+FEATURE_LIBS += $(if $(HAVE_EGL),-lEGL)
+
+# ONNX Runtime: headers only; the library is opened when a model is (system package, or build/onnxruntime/lib).
+FEATURE_EXCLUDE += $(call choose,ONNXRUNTIME,src/policy/policy_onnx.c)
+FEATURE_CFLAGS += $(if $(HAVE_ONNXRUNTIME),-isystem $(firstword $(wildcard /usr/include/onnxruntime build/onnxruntime/include)))
+
+# Modules: one rule each, from the shims of one library. Never built with a sanitizer.
+MODULE_FLAGS := -O2 -g -fPIC -shared -pthread -Iinclude -Isrc
+MODULE_WARN := $(WARN)
+
+OPENCV_SHIMS := $(wildcard src/vision/*_opencv.cpp)
+ifneq ($(and $(HAVE_OPENCV),$(OPENCV_SHIMS)),)
+MODULES += build/lib/vsss_opencv.so
+build/lib/vsss_opencv.so: $(OPENCV_SHIMS) $(wildcard src/vision/*.h include/vsss/*.h) build/features.mk
+	@mkdir -p $(@D)
+	$(CXX) -std=gnu++17 $(MODULE_WARN) $(MODULE_FLAGS) -isystem /usr/include/opencv4 -o $@ $(OPENCV_SHIMS) \
+	  -lopencv_calib3d -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
+endif
+
+TORCH_SHIMS := $(wildcard src/learn/*_torch.cpp)
+ifneq ($(and $(HAVE_TORCH),$(TORCH_SHIMS)),)
+MODULES += build/lib/vsss_torch.so
+build/lib/vsss_torch.so: $(TORCH_SHIMS) $(wildcard src/learn/*.h include/vsss/*.h) build/features.mk
+	@mkdir -p $(@D)
+	$(CXX) -std=gnu++17 $(MODULE_WARN) $(MODULE_FLAGS) -isystem /usr/include/torch/csrc/api/include -o $@ $(TORCH_SHIMS) \
+	  -ltorch -ltorch_cpu -lc10
+endif
+
+MPI_SHIMS := $(wildcard src/learn/*_mpi.c)
+ifneq ($(and $(HAVE_MPI),$(MPI_SHIMS)),)
+MODULES += build/lib/vsss_mpi.so
+build/lib/vsss_mpi.so: $(MPI_SHIMS) $(wildcard src/learn/*.h include/vsss/*.h) build/features.mk
+	@mkdir -p $(@D)
+	$(CC) -std=gnu11 $(MODULE_WARN) $(MODULE_FLAGS) -isystem $(firstword $(wildcard /usr/lib/*/openmpi/include)) -o $@ $(MPI_SHIMS) -lmpi
+endif
+FEATURE_EXCLUDE += $(MPI_SHIMS)
+
+features:
+	@cat build/features.txt
