@@ -1,0 +1,55 @@
+// Pictures of a vs_world, off screen: EGL without a window, drawn by MuJoCo. Two views: BROADCAST for people (coloured
+// robots, shadows, score, clock, captions) and CAMERA, the overhead camera of a venue (plain, fast, exact pinhole).
+// Only poses are read, so a world from the simulator, a tracker or a log is drawn alike.
+#ifndef VSSS_RENDER_H
+#define VSSS_RENDER_H
+
+#include <stdint.h>
+
+#include "vsss/world.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum vs_view { VS_VIEW_BROADCAST, VS_VIEW_CAMERA } vs_view;
+
+typedef struct vs_render_def {
+  vs_view view;
+  int width_px, height_px; // 64..3840 x 64..2160
+  // The picture on each robot's cap: square, cap_px x cap_px bytes of grey, row 0 on the robot's left, column 0 at its
+  // back seen from above (so "up" in the picture is the robot's left and "right" its front); cap_size_m is the printed
+  // width. NULL: a team-coloured cap with two identity patches. Read by vs_render_new only.
+  const uint8_t *cap[VS_TEAMS][VS_TEAM_SIZE];
+  int cap_px;
+  double cap_size_m;
+  double camera_height_m; // CAMERA: lens over the floor; 2.2
+  const char *title;      // BROADCAST: shown beside the score, such as "EMC  INF"; NULL: none. Copied.
+} vs_render_def;
+
+vs_render_def vs_render_def_default(vs_view view); // 1280x720 broadcast, 640x480 camera, no pictures on the caps
+
+typedef struct vs_render vs_render; // owns one OpenGL context; one thread at a time
+
+// VS_FAIL: no EGL (built without its headers, library or driver missing): says which package to install.
+vs_status vs_render_new(const vs_render_def *def, vs_render **out, vs_error *err);
+void vs_render_free(vs_render *render); // NULL is allowed
+
+// Draws world into rgb, uint8_t[height_px][width_px][3], top row first. Pieces that are not valid are left out. game:
+// NULL for a picture without score and captions; the CAMERA view never shows them.
+vs_status vs_render_world(vs_render *render, const vs_world *world, const vs_game *game, uint8_t *rgb, vs_error *err);
+
+// The CAMERA view's exact geometry: square pixels, no distortion, looking straight down on the field's centre, with the
+// image's right = +x and its top = +y. Pixel (0, 0) is the top left CORNER of the picture, so the centre of the
+// first pixel is at (0.5, 0.5): x_px = cx_px + focal_px * x_m / (height_m - z_m), y_px = cy_px - focal_px * y_m / ...
+typedef struct vs_pinhole {
+  int width_px, height_px;
+  double focal_px, cx_px, cy_px;
+  double height_m; // of the lens over the floor
+} vs_pinhole;
+vs_pinhole vs_render_pinhole(const vs_render *render);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
