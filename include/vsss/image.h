@@ -1,0 +1,41 @@
+// Pictures in memory: colour conversion, drawing and files. BGR is blue, green, red bytes per pixel, row 0 at the top.
+#ifndef VSSS_IMAGE_H
+#define VSSS_IMAGE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "vsss/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct vs_image {
+  uint8_t *bgr;      // caller's, [height][stride]
+  int width, height; // pixels
+  int stride;        // bytes per row, >= 3 * width
+} vs_image;
+
+// Luma of ITU-R BT.601 (0.299 R + 0.587 G + 0.114 B), the weights V4L2 and JPEG use.
+void vs_image_grey(const uint8_t *bgr, int bgr_stride, int width, int height, uint8_t *grey, int grey_stride);
+// Packed 4:2:2 Y U Y V of V4L2 (BT.601, limited range) into both planes a frame needs.
+void vs_image_from_yuyv(const uint8_t *yuyv, int yuyv_stride, int width, int height, uint8_t *grey, int grey_stride,
+                        uint8_t *bgr, int bgr_stride);
+
+// Lines and discs clipped to the picture; colour is {blue, green, red}.
+void vs_image_line(vs_image *image, double x0_px, double y0_px, double x1_px, double y1_px, int width_px,
+                   const uint8_t colour[3]);
+void vs_image_disc(vs_image *image, double x_px, double y_px, double radius_px, const uint8_t colour[3]);
+
+// The following need OpenCV (module "opencv"): without it VS_FAIL says what to install.
+// Writes a picture; the ending of path chooses PNG or JPEG.
+vs_status vs_image_save(const char *path, const uint8_t *bgr, int stride, int width, int height, vs_error *err);
+// JPEG into out[capacity], its length into *size. VS_FAIL where it does not fit. shrink: 1 full size, 2 half, ...
+vs_status vs_image_jpeg(const uint8_t *bgr, int stride, int width, int height, int quality, int shrink, uint8_t *out,
+                        size_t capacity, size_t *size, vs_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,32 @@
+// AprilTags as patterns: what is printed on a robot's cap and textured on the rig's. Needs libapriltag.
+#ifndef VSSS_TAG_H
+#define VSSS_TAG_H
+
+#include <stdint.h>
+
+#include "vsss/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Side of the printed paper on the 80 mm cap, all cells (field.md 1.2). The top edge of the pattern shows to the front.
+#define VS_TAG_PAPER_M   0.078
+#define VS_TAG_FAMILY    "tagStandard41h12"
+#define VS_TAG_MAX_CELLS 12 // a side of the largest family, white margin included
+
+// The pattern of one tag: cells x cells, row 0 is the top edge, 0 black, 255 white.
+typedef struct vs_tag_pattern {
+  int cells;        // on a side: 9 for tagStandard41h12 (no margin: its outer ring is data), 10 for tag36h11
+  int border_cells; // side of the square whose corners the detector reports: 5 and 8
+  uint8_t cell[VS_TAG_MAX_CELLS][VS_TAG_MAX_CELLS];
+} vs_tag_pattern;
+
+// VS_USAGE: unknown family (lists the known ones) or an id the family does not have; VS_FAIL: built without libapriltag.
+vs_status vs_tag_pattern_of(const char *family, int id, vs_tag_pattern *out, vs_error *err);
+const char *vs_tag_families(void); // "tagStandard41h12 tag25h9 ..."
+
+#ifdef __cplusplus
+}
+#endif
+#endif
