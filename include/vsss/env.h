@@ -31,10 +31,12 @@ void vs_env_free(vs_env *env);
 vs_status vs_env_reset(vs_env *env, uint64_t seed, vs_error *err);
 
 // One camera frame. event (may be NULL): what the referee said after it; the pieces have already been placed anew.
+// VS_USAGE once the match is over. A failure names the match's seed and time.
 vs_status vs_env_frame(vs_env *env, vs_event *event, vs_error *err);
 
-// One decision: frames until the next decision tick. Between a restart and the next decision tick the frame count
-// starts anew, so that the first frame after a placement is a decision.
+// One decision: frames until the next decision tick, at most three. A placement ends it early: the frame count starts
+// anew there, so that the first frame after a placement is a decision. Rewards compare the truth at its start with the
+// truth the referee judged, before any placement.
 typedef struct vs_env_result {
   vs_event event;  // the most important of the decision (goal > penalty > others), absolute frame
   bool over;       // the match or episode ended
@@ -43,9 +45,12 @@ typedef struct vs_env_result {
 } vs_env_result;
 vs_status vs_env_step(vs_env *env, vs_env_result *result, vs_error *err);
 
-// External teams: float[3][2] action, held until replaced; float[3][464] observation of the present decision tick.
+// External teams: float[3][2] action, held until replaced. Any team: float[3][464] observation of the present decision
+// tick, and float[3][2] what it commanded in the last decision, the mean over its frames (a 30 Hz player changes its
+// mind within one).
 vs_status vs_env_set_action(vs_env *env, vs_team team, const float *action, vs_error *err);
 void vs_env_observation(const vs_env *env, vs_team team, float *out);
+void vs_env_mean_action(const vs_env *env, vs_team team, float *out);
 // Swap the player of a team; takes effect at the next reset.
 vs_status vs_env_set_player(vs_env *env, vs_team team, const char *uri, vs_error *err);
 
@@ -58,6 +63,7 @@ vs_control *vs_env_control(vs_env *env, vs_team team);
 vs_sim *vs_env_sim(vs_env *env);
 uint64_t vs_env_hash(const vs_env *env); // of all true worlds since the reset
 
+// Snapshots, to be restored into an env of the same def and players.
 size_t vs_env_state_size(const vs_env *env); // 0: a player that cannot be snapshotted
 void vs_env_save(const vs_env *env, void *state);
 void vs_env_restore(vs_env *env, const void *state);

@@ -23,7 +23,7 @@ typedef struct vs_vecenv_def {
 #define VS_VECENV_ROWS(envs) ((envs)*VS_TEAMS * VS_TEAM_SIZE)
 typedef struct vs_vecenv_buffers {
   float *observation;  // [rows][VS_OBS_SIZE]; after a step: of the new episode where one ended
-  float *action;       // [rows][2]: read for external teams, written for scripted ones
+  float *action;       // [rows][2]: read for external teams, written for others (vs_env_mean_action)
   float *reward_terms; // [rows][VS_REWARD_TERMS]
   uint8_t *done;       // [envs]: an episode ended in this step
   uint8_t *time_limit; // [envs]: ... by its clock
@@ -35,12 +35,18 @@ typedef struct vs_vecenv_buffers {
 
 vs_status vs_vecenv_new(const vs_vecenv_def *def, vs_vecenv **out, vs_error *err);
 void vs_vecenv_free(vs_vecenv *vec);
+// All matches at the start of episode 0; writes the observations.
 vs_status vs_vecenv_reset(vs_vecenv *vec, const vs_vecenv_buffers *buffers, vs_error *err);
+// One decision of every match. A failure is the one of the lowest match; the others have been stepped.
 vs_status vs_vecenv_step(vs_vecenv *vec, const vs_vecenv_buffers *buffers, vs_error *err);
 
 // The player of a team of one match from its next episode on (a frozen self, a scripted one); NULL: external.
 vs_status vs_vecenv_set_player(vs_vecenv *vec, int env, vs_team team, const char *uri, vs_error *err);
 
+uint64_t vs_vecenv_hash(const vs_vecenv *vec); // of all true worlds of the present episodes
+
+// Snapshots, to be restored into a vecenv of the same def and players (any number of threads). Size 0: some player
+// cannot be snapshotted.
 size_t vs_vecenv_state_size(const vs_vecenv *vec);
 void vs_vecenv_save(const vs_vecenv *vec, void *state);
 void vs_vecenv_restore(vs_vecenv *vec, const void *state);

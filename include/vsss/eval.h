@@ -1,0 +1,69 @@
+// Statistics over many matches: played over threads, each from its own seed, summed up with bootstrap intervals and
+// Elo ratings (paper, section VIII: win, draw and loss rate, mean goals for and against, score (17), 95 % intervals).
+#ifndef VSSS_EVAL_H
+#define VSSS_EVAL_H
+
+#include "vsss/env.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// What is kept of one match. Blue is the first player and defends -x throughout; it also has the first kick-off.
+typedef struct vs_match_result {
+  bool played;
+  uint64_t seed, hash; // hash: of all true worlds
+  double time_s;       // played
+  int score[VS_TEAMS];
+  int events[VS_TEAMS][VS_EVENT_KINDS]; // by the team the event names: goals scored, penalties and goal kicks taken
+} vs_match_result;
+
+typedef struct vs_series_def {
+  vs_env_def env;
+  int matches, threads;
+  uint64_t seed; // match i has the seed vs_seed_mix(seed, i)
+  // Called after each match, one call at a time, from any of the threads. False stops the series: no new match begins
+  // and those under way are left.
+  bool (*progress)(void *context, int index, const vs_match_result *result);
+  // Asked now and then while a match goes on (every simulated second); false stops the series likewise. May be NULL.
+  bool (*go_on)(void *context);
+  void *context;
+} vs_series_def;
+
+// Plays def->matches matches into results[def->matches]. Results do not depend on the number of threads. A match that
+// was not finished has played == false.
+vs_status vs_series_play(const vs_series_def *def, vs_match_result *results, vs_error *err);
+
+// Plays one match to its end in an env that was made for it.
+vs_status vs_match_play(vs_env *env, uint64_t seed, bool (*go_on)(void *context), void *context, vs_match_result *out,
+                        vs_error *err);
+// Adds one event of the match to its counts.
+void vs_match_count(vs_match_result *result, const vs_event *event);
+
+// A mean with the bounds of its 95 % interval: percentiles of the means of VS_BOOTSTRAP_RESAMPLES samples drawn with
+// replacement.
+#define VS_BOOTSTRAP_RESAMPLES 10000
+typedef struct vs_estimate {
+  double mean, low, high;
+} vs_estimate;
+vs_estimate vs_bootstrap(const double *values, int n, uint64_t seed); // n == 0: all NaN
+
+// Seen from blue. Rates in [0, 1]; goals, score and restarts are per match.
+typedef struct vs_series_summary {
+  int matches; // played
+  vs_estimate win, draw, loss, goals_for, goals_against;
+  vs_estimate score; // paper (17): (goals for - goals against) / matches
+  double penalties_for, penalties_against, free_balls, goal_kicks;
+  double mean_time_s;
+} vs_series_summary;
+void vs_series_sum_up(const vs_match_result *results, int n, vs_series_summary *out);
+
+// Elo ratings of n players from points[i * n + j] = matches i won against j plus half the draws, games[i * n + j] =
+// matches between them (symmetric). Maximum likelihood with one virtual draw for each pair that played, so that a
+// player who always wins stays finite; mean 0; 400 points are odds of 10.
+void vs_elo(int n, const double *points, const int *games, double *rating);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
