@@ -18,12 +18,13 @@ extern "C" {
 #define VSSS_PLAYER_VERSION 1
 
 typedef struct vsss_player_api {
-  uint32_t version; // VSSS_PLAYER_VERSION
-  const char *name; // for tables and messages
-  double rate_hz;   // how often step is called: VS_CAMERA_HZ or a divisor of it
-  size_t state_size;
+  uint32_t version;  // VSSS_PLAYER_VERSION
+  const char *name;  // for tables and messages
+  double rate_hz;    // how often step is called: VS_CAMERA_HZ or a divisor of it
+  size_t state_size; // at least 1
 
-  // Start of a match. options is what followed "?" in the URI ("pid=1&x=2", "" if nothing). Returns VS_OK or fills err.
+  // Start of a match; the block is zeroed once, when it is made. options is what followed "?" in the URI ("pid=1&x=2",
+  // "" if nothing). Returns VS_OK, or fills err->text and returns VS_FAIL or VS_USAGE.
   vs_status (*init)(void *state, uint64_t seed, const char *options, vs_error *err);
 
   // One call: the measured world and game as this team sees them (it attacks +x, robot[0] is its own team), dt_s since

@@ -3,6 +3,8 @@
 #ifndef VSSS_POLICY_H
 #define VSSS_POLICY_H
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "vsss/contract.h"
@@ -18,7 +20,9 @@ typedef struct vs_player vs_player;
 
 typedef enum vs_player_sees { VS_SEES_WORLD, VS_SEES_OBSERVATION } vs_player_sees;
 
-// Opens a player. VS_USAGE: unknown scheme (the text lists the known ones); VS_FAIL: its file cannot be used.
+// Opens a player: SCHEME:[FILE][?key=value&...]. VS_USAGE: unknown scheme (the text lists the known ones) or option;
+// VS_FAIL: its file cannot be used. A plugin that crashes is a VS_FAIL of the call in which it does; it is not called
+// again, and the program should end.
 vs_status vs_player_open(const char *uri, vs_player **out, vs_error *err);
 void vs_player_close(vs_player *player); // NULL is allowed
 
@@ -38,17 +42,22 @@ vs_status vs_player_step(vs_player *player, const vs_world *view, const vs_game 
 // Always evaluated in batches of VS_TEAM_SIZE rows, so that a result never depends on how many matches share a call.
 vs_status vs_player_act(vs_player *player, const float *obs, int rows, float *action, vs_error *err);
 
-// Snapshots. Size 0: this player cannot be snapshotted.
+// Snapshots: state is a block of vs_player_state_size bytes of the caller. Size 0: this player cannot be snapshotted.
 size_t vs_player_state_size(const vs_player *player);
 void vs_player_save(const vs_player *player, void *state);
 void vs_player_restore(vs_player *player, const void *state);
 
-// A scheme that needs another module (lcm:). open gets the text after the colon and returns an api and the options
-// its init will get (a static string or one that outlives the player).
+// A scheme that needs another module (lcm:), registered once at start, before any thread; a scheme that is known
+// already is left as it is. open gets the text after the colon (valid as long as the player) and returns an api and,
+// if it likes, other options for its init than what follows "?" (a static string or one that outlives the player).
+// state_size 0 in such an api says that it cannot be snapshotted.
 typedef vs_status (*vs_player_provider)(const char *rest, const vsss_player_api **api, const char **options,
                                         vs_error *err);
 void vs_player_register(const char *scheme, const char *help, vs_player_provider open);
-const char *vs_player_schemes(void); // "emc: inf: ..." for messages and --help
+
+// The known schemes, for --help: false where index is past the last. vs_player_schemes: "onnx: emc: ..." in one line.
+bool vs_player_scheme(int index, const char **scheme, const char **help);
+void vs_player_schemes(char *out, size_t size);
 
 #ifdef __cplusplus
 }

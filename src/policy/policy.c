@@ -1,0 +1,251 @@
+// Players by URI: the table of schemes, and what a caller sees of a player whatever stands behind it.
+#include "vsss/policy.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "policy_internal.h"
+#include "vsss/field.h"
+
+#define MAX_PROVIDERS 8
+
+struct vs_player {
+  char *uri, *rest; // rest: a copy of what follows the scheme, cut at "?"
+  const char *options;
+  const vsss_player_api *api; // NULL: an observation player
+  vs_obs_player *learned;
+  vs_plugin *plugin;
+  void *state; // api->state_size bytes
+  bool started;
+};
+
+typedef struct scheme {
+  const char *name, *help;
+  vs_status (*open)(vs_player *player, const struct scheme *scheme, vs_error *err);
+  const vsss_player_api *builtin;
+  vs_player_provider provider;
+} scheme;
+
+static vs_status open_builtin(vs_player *player, const scheme *s, vs_error *err) {
+  if (*player->rest) return vs_fail(err, VS_USAGE, "%s: nothing but ?options may follow '%s'", player->uri, s->name);
+  player->api = s->builtin;
+  return VS_OK;
+}
+
+static vs_status open_plugin(vs_player *player, const scheme *s, vs_error *err) {
+  (void)s;
+  if (!*player->rest) return vs_fail(err, VS_USAGE, "plugin: needs a file, as in plugin:./team.so");
+  vs_status status = vs_plugin_open(player->rest, &player->plugin, err);
+  if (status == VS_OK) player->api = vs_plugin_api(player->plugin);
+  return status;
+}
+
+static vs_status open_onnx(vs_player *player, const scheme *s, vs_error *err) {
+  const char *rest = player->uri + strlen(s->name);
+  if (!*player->rest) return vs_fail(err, VS_USAGE, "onnx: needs a file, as in onnx:models/policy/vsss.onnx");
+#ifdef VSSS_HAVE_ONNX
+  return vs_policy_onnx_open(rest, &player->learned, err);
+#else
+  return vs_fail(err, VS_FAIL,
+                 "onnx:%s: this build has no ONNX Runtime: install libonnxruntime-dev (Debian 13; deploy/setup.sh "
+                 "knows how on Debian 12) and run make again",
+                 rest);
+#endif
+}
+
+static vs_status open_provided(vs_player *player, const scheme *s, vs_error *err) {
+  return s->provider(player->uri + strlen(s->name), &player->api, &player->options, err);
+}
+
+// The program's table. Rows after the built-in ones are registered once at start, before any thread.
+static scheme table[6 + MAX_PROVIDERS + 1] = {
+    {"onnx:", "FILE, a trained policy", open_onnx, NULL, NULL},
+    {"random:", "uniform wheel speeds", open_builtin, &vs_player_random, NULL},
+    {"zero:", "stands still", open_builtin, &vs_player_zero, NULL},
+    {"plugin:", "FILE.so, a team's own strategy (include/vsss/player.h)", open_plugin, NULL, NULL},
+};
+
+static scheme *table_end(void) {
+  scheme *s = table;
+  while (s->name) s++;
+  return s;
+}
+
+void vs_player_register(const char *name, const char *help, vs_player_provider open) {
+  for (scheme *s = table; s->name; s++)
+    if (!strcmp(s->name, name)) return;
+  scheme *end = table_end();
+  if (end - table >= (long)(sizeof table / sizeof *table) - 1) return;
+  *end = (scheme){name, help, open_provided, NULL, open};
+}
+
+bool vs_player_scheme(int index, const char **name, const char **help) {
+  if (index < 0 || index >= table_end() - table) return false;
+  *name = table[index].name;
+  *help = table[index].help;
+  return true;
+}
+
+void vs_player_schemes(char *out, size_t size) {
+  out[0] = '\0';
+  for (const scheme *s = table; s->name; s++) {
+    size_t used = strlen(out);
+    snprintf(out + used, size - used, "%s%s", used ? " " : "", s->name);
+  }
+}
+
+static const scheme *find_scheme(const char *uri) {
+  for (const scheme *s = table; s->name; s++)
+    if (!strncmp(uri, s->name, strlen(s->name))) return s;
+  return NULL;
+}
+
+static vs_status unknown_scheme(const char *uri, vs_error *err) {
+  char known[256];
+  vs_player_schemes(known, sizeof known);
+  return vs_fail(err, VS_USAGE, "'%.120s' is no player; known: %s", uri, known);
+}
+
+static char *copy_text(const char *text) {
+  size_t size = strlen(text) + 1;
+  char *copy = malloc(size);
+  return copy ? memcpy(copy, text, size) : NULL;
+}
+
+static vs_status open_parts(vs_player *player, const scheme *s, const char *uri, vs_error *err) {
+  player->uri = copy_text(uri);
+  player->rest = copy_text(uri + strlen(s->name));
+  if (!player->uri || !player->rest) return vs_fail(err, VS_FAIL, "%s: out of memory", uri);
+  char *question = strchr(player->rest, '?');
+  player->options = question ? question + 1 : "";
+  if (question) *question = '\0';
+
+  vs_status status = s->open(player, s, err);
+  if (status != VS_OK || !player->api) return status;
+  size_t size = (player->api->state_size + 63) / 64 * 64;
+  player->state = aligned_alloc(64, size ? size : 64);
+  if (!player->state) return vs_fail(err, VS_FAIL, "%s: out of memory (%zu bytes of state)", uri, size);
+  memset(player->state, 0, size ? size : 64);
+  return vs_player_reset(player, 0, err); // so that wrong options are an error now, not at the first match
+}
+
+vs_status vs_player_open(const char *uri, vs_player **out, vs_error *err) {
+  *out = NULL;
+  const scheme *s = find_scheme(uri);
+  if (!s) return unknown_scheme(uri, err);
+  vs_player *player = calloc(1, sizeof *player);
+  if (!player) return vs_fail(err, VS_FAIL, "%s: out of memory", uri);
+  vs_status status = open_parts(player, s, uri, err);
+  if (status != VS_OK) {
+    vs_player_close(player);
+    return status;
+  }
+  *out = player;
+  return VS_OK;
+}
+
+static void end_match(vs_player *player) {
+  if (!player->started) return;
+  player->started = false;
+  if (player->plugin)
+    vs_plugin_free_state(player->plugin, player->state, NULL);
+  else if (player->api->free)
+    player->api->free(player->state);
+}
+
+void vs_player_close(vs_player *player) {
+  if (!player) return;
+  end_match(player);
+  if (player->plugin) vs_plugin_close(player->plugin);
+  if (player->learned) player->learned->close(player->learned);
+  free(player->state);
+  free(player->rest);
+  free(player->uri);
+  free(player);
+}
+
+vs_player_sees vs_player_kind(const vs_player *player) { return player->api ? VS_SEES_WORLD : VS_SEES_OBSERVATION; }
+
+double vs_player_rate_hz(const vs_player *player) { return player->api ? player->api->rate_hz : VS_DECISION_HZ; }
+
+const char *vs_player_uri(const vs_player *player) { return player->uri; }
+
+const char *vs_player_name(const vs_player *player) { return player->api ? player->api->name : player->learned->name; }
+
+vs_status vs_player_reset(vs_player *player, uint64_t seed, vs_error *err) {
+  if (!player->api) return VS_OK;
+  end_match(player);
+  vs_status status = player->plugin ? vs_plugin_init(player->plugin, player->state, seed, player->options, err)
+                                    : player->api->init(player->state, seed, player->options, err);
+  player->started = status == VS_OK;
+  return status;
+}
+
+static vs_status check_speed(const vs_player *player, int robot, const char *wheel, double *radps, vs_error *err) {
+  if (!isfinite(*radps))
+    return vs_fail(err, VS_FAIL, "%s: robot %d, %s wheel: %g rad/s is no command", player->uri, robot, wheel, *radps);
+  *radps = fmin(fmax(*radps, -VS_WHEEL_LIMIT_RADPS), VS_WHEEL_LIMIT_RADPS);
+  return VS_OK;
+}
+
+vs_status vs_player_step(vs_player *player, const vs_world *view, const vs_game *game, double dt_s,
+                         vs_wheels out[VS_TEAM_SIZE], vs_error *err) {
+  if (!player->api) return vs_fail(err, VS_FAIL, "%s: acts on observations, not on a world", player->uri);
+  if (player->plugin) {
+    vs_status status = vs_plugin_step(player->plugin, player->state, view, game, dt_s, out, err);
+    if (status != VS_OK) return status;
+  } else {
+    player->api->step(player->state, view, game, dt_s, out);
+  }
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    vs_status status = check_speed(player, i, "left", &out[i].left_radps, err);
+    if (status == VS_OK) status = check_speed(player, i, "right", &out[i].right_radps, err);
+    if (status != VS_OK) return status;
+  }
+  return VS_OK;
+}
+
+static vs_status act_team(vs_player *player, int first_row, const float *obs, float *action, vs_error *err) {
+  vs_status status = player->learned->act(player->learned, obs, VS_TEAM_SIZE, action, err);
+  if (status != VS_OK) return status;
+  for (int i = 0; i < VS_TEAM_SIZE * VS_ACTION_SIZE; i++) {
+    if (!isfinite(action[i]))
+      return vs_fail(err, VS_FAIL, "%s: row %d, %s wheel: action %g is no number", player->uri,
+                     first_row + i / VS_ACTION_SIZE, i % VS_ACTION_SIZE ? "right" : "left", (double)action[i]);
+    action[i] = fminf(fmaxf(action[i], -1.0f), 1.0f);
+  }
+  return VS_OK;
+}
+
+vs_status vs_player_act(vs_player *player, const float *obs, int rows, float *action, vs_error *err) {
+  if (player->api) return vs_fail(err, VS_FAIL, "%s: acts on a world, not on observations", player->uri);
+  int whole = rows / VS_TEAM_SIZE * VS_TEAM_SIZE;
+  for (int r = 0; r < whole; r += VS_TEAM_SIZE) {
+    vs_status status = act_team(player, r, obs + (size_t)r * VS_OBS_SIZE, action + (size_t)r * VS_ACTION_SIZE, err);
+    if (status != VS_OK) return status;
+  }
+  if (whole == rows) return VS_OK;
+  // A last team that is not whole: filled up with zeros, whose actions are dropped.
+  float padded[VS_TEAM_SIZE * VS_OBS_SIZE] = {0}, result[VS_TEAM_SIZE * VS_ACTION_SIZE];
+  size_t left = (size_t)(rows - whole);
+  memcpy(padded, obs + (size_t)whole * VS_OBS_SIZE, left * VS_OBS_SIZE * sizeof *padded);
+  vs_status status = act_team(player, whole, padded, result, err);
+  if (status == VS_OK) memcpy(action + (size_t)whole * VS_ACTION_SIZE, result, left * VS_ACTION_SIZE * sizeof *result);
+  return status;
+}
+
+// A memoryless player still answers 1, since 0 says "cannot".
+size_t vs_player_state_size(const vs_player *player) { return player->api ? player->api->state_size : 1; }
+
+void vs_player_save(const vs_player *player, void *state) {
+  if (player->api)
+    memcpy(state, player->state, player->api->state_size);
+  else
+    memset(state, 0, 1);
+}
+
+void vs_player_restore(vs_player *player, const void *state) {
+  if (player->api) memcpy(player->state, state, player->api->state_size);
+}
