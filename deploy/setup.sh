@@ -104,7 +104,7 @@ header_sha256=7783e9664bdb0b1b36145b5c8587dd1bc9a399aa000edf2e3dd03003cafc6882
 case $(dpkg --print-architecture) in
 amd64) wheel_platform=manylinux_2_28_x86_64 wheel_sha256=982dcc04a6688e1af9e3da1d4ef2bdeb11417cf3f8dde81f8f721043c1919a4f ;;
 arm64) wheel_platform=manylinux_2_28_aarch64 wheel_sha256=4b6a29a1767b92d543091349f5397a1c7619eaca746cd1bc47f8b4ec5a9f1a6c ;;
-*) wheel_platform= wheel_sha256= ;;
+*) wheel_platform="" wheel_sha256="" ;;
 esac
 
 check_sha256() { # file, expected
