@@ -1,0 +1,80 @@
+// src/base/config.c
+#include "assert_near.h"
+#include "vsss/config.h"
+
+#include <string.h>
+
+typedef struct settings {
+  int envs;
+  double rate;
+  bool noise;
+  char name[8];
+} settings;
+
+static settings value;
+static const vs_config_key schema[] = {
+    {"train.envs", VS_CONFIG_INT, &value.envs, 0, 1, 1000, "matches at once"},
+    {"train.rate", VS_CONFIG_REAL, &value.rate, 0, 0, 0, "learning rate"},
+    {"noise", VS_CONFIG_BOOL, &value.noise, 0, 0, 0, "sensor noise"},
+    {"name", VS_CONFIG_TEXT, value.name, sizeof value.name, 0, 0, "of the run"},
+    {NULL, VS_CONFIG_INT, NULL, 0, 0, 0, NULL},
+};
+
+static void sections_comments_and_all_types_are_read(void **state) {
+  (void)state;
+  memset(&value, 0, sizeof value);
+  assert_ok(vs_config_parse("a.ini", "# first\nnoise = yes ; on\nname= abc \n\n[train]\nenvs = 20\nrate = 4e-4\n",
+                            schema, err));
+  assert_int_equal(value.envs, 20);
+  assert_near(value.rate, 4e-4, 0);
+  assert_true(value.noise);
+  assert_string_equal(value.name, "abc");
+}
+
+static void refused(const char *text, const char *message) {
+  vs_error err = {0};
+  assert_int_equal(vs_config_parse("a.ini", text, schema, &err), VS_USAGE);
+  if (!strstr(err.text, message)) fail_msg("expected '%s' in: %s", message, err.text);
+}
+
+static void unknown_key_names_file_line_key_and_the_nearest(void **state) {
+  (void)state;
+  refused("[train]\n\nenv = 3\n", "a.ini:3: unknown key 'train.env' (did you mean 'train.envs'?)");
+}
+
+static void bad_values_name_the_value_and_what_is_allowed(void **state) {
+  (void)state;
+  refused("[train]\nenvs = 0\n", "a.ini:2: train.envs = 0: allowed are 1 to 1000");
+  refused("[train]\nenvs = 2.5\n", "a.ini:2: train.envs = 2.5: expected a whole number");
+  refused("[train]\nrate = nan\n", "train.rate = nan: expected a number");
+  refused("noise = maybe\n", "noise = maybe: expected true or false");
+  refused("name = 12345678\n", "name: longer than 7 characters");
+  refused("noise\n", "a.ini:1: 'noise': expected key = value");
+  refused("[train\n", "a.ini:1: '[train': expected [section]");
+}
+
+static void assignment_sets_a_key(void **state) {
+  (void)state;
+  assert_ok(vs_config_set("train.envs=7", schema, err));
+  assert_int_equal(value.envs, 7);
+  vs_error err = {0};
+  assert_int_equal(vs_config_set("train.envs", schema, &err), VS_USAGE);
+}
+
+static void missing_file_is_named(void **state) {
+  (void)state;
+  vs_error err = {0};
+  assert_int_equal(vs_config_load("no/such.ini", schema, &err), VS_FAIL);
+  assert_non_null(strstr(err.text, "no/such.ini: No such file"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(sections_comments_and_all_types_are_read),
+      cmocka_unit_test(unknown_key_names_file_line_key_and_the_nearest),
+      cmocka_unit_test(bad_values_name_the_value_and_what_is_allowed),
+      cmocka_unit_test(assignment_sets_a_key),
+      cmocka_unit_test(missing_file_is_named),
+  };
+  return cmocka_run_group_tests_name("base/config", tests, NULL, NULL);
+}
