@@ -3,6 +3,8 @@
 # (build/lib/vsss_NAME.so) that a command loads when it needs them. FLAVOUR=asan|tsan builds beside, not over.
 
 .DEFAULT_GOAL := all
+# One short line per step; V=1 shows the commands.
+Q := $(if $(V),,@)
 FLAVOUR ?= plain
 B := build/$(FLAVOUR)
 PREFIX ?= /usr/local
@@ -50,20 +52,23 @@ help:
 	@echo "make install   into PREFIX ($(PREFIX)); make clean"
 
 $(VSSS): $(MAIN_OBJ) $(B)/libvsss.a
-	$(CC) $(SAN) -rdynamic -o $@ $(MAIN_OBJ) -Wl,--whole-archive $(B)/libvsss.a -Wl,--no-whole-archive $(LDLIBS_ALL)
+	@echo '  LD    $@'
+	$(Q)$(CC) $(SAN) -rdynamic -o $@ $(MAIN_OBJ) -Wl,--whole-archive $(B)/libvsss.a -Wl,--no-whole-archive $(LDLIBS_ALL)
 
 $(B)/libvsss.a: $(LIB_OBJ)
 	@rm -f $@
-	ar rcs $@ $(LIB_OBJ)
+	$(Q)ar rcs $@ $(LIB_OBJ)
 
 $(B)/%.o: %.c build/features.mk | $(GENERATED)
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) -MMD -MP -c -o $@ $<
+	@echo '  CC    $<'
+	$(Q)$(CC) $(CFLAGS_ALL) -MMD -MP -c -o $@ $<
 
 # Tests: one binary per file, linked with everything.
 $(B)/tests/%: tests/%.c $(B)/libvsss.a
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) -Itests -rdynamic -MMD -MP -MF $@.d -o $@ $< -Wl,--whole-archive $(B)/libvsss.a -Wl,--no-whole-archive -lcmocka $(LDLIBS_ALL) -lz
+	@echo '  TEST  $@'
+	$(Q)$(CC) $(CFLAGS_ALL) -Itests -rdynamic -MMD -MP -MF $@.d -o $@ $< -Wl,--whole-archive $(B)/libvsss.a -Wl,--no-whole-archive -lcmocka $(LDLIBS_ALL) -lz
 
 tests: all $(TEST_BIN) $(EXTRA_TESTS)
 
@@ -98,6 +103,6 @@ install: all $(B)/libvsss.so
 	  '$(PREFIX)' '$(LDLIBS_ALL)' > $(DESTDIR)$(PREFIX)/lib/pkgconfig/vsss.pc
 
 $(B)/libvsss.so: $(B)/libvsss.a
-	$(CC) $(SAN) -shared -o $@ -Wl,--whole-archive $(B)/libvsss.a -Wl,--no-whole-archive $(LDLIBS_ALL)
+	$(Q)$(CC) $(SAN) -shared -o $@ -Wl,--whole-archive $(B)/libvsss.a -Wl,--no-whole-archive $(LDLIBS_ALL)
 
 -include $(LIB_OBJ:.o=.d) $(MAIN_OBJ:.o=.d) $(TEST_BIN:=.d) $(BENCH_BIN:=.d)

@@ -25,13 +25,14 @@ FEATURE_OBJ += $(LCM_NAMES:%=$(B)/gen/lcm/%.o)
 GENERATED += $(if $(LCM_TYPES),build/gen/lcm/.made)
 build/gen/lcm/.made: $(LCM_TYPES)
 	@mkdir -p $(@D)
-	lcm-gen -c --c-cpath $(@D) --c-hpath $(@D) $(LCM_TYPES)
+	@echo '  LCM   $(LCM_TYPES)'
+	$(Q)lcm-gen -c --c-cpath $(@D) --c-hpath $(@D) $(LCM_TYPES)
 	@touch $@
 $(LCM_NAMES:%=build/gen/lcm/%.c): build/gen/lcm/.made ;
 # Generated code is not clean under -Wextra, and is not ours to mend.
 $(B)/gen/lcm/%.o: build/gen/lcm/%.c
 	@mkdir -p $(@D)
-	$(CC) -std=gnu11 -w $(OPT) -fPIC $(SAN) -c -o $@ $<
+	$(Q)$(CC) -std=gnu11 -w $(OPT) -fPIC $(SAN) -c -o $@ $<
 $(B)/src/comms/bus.o: build/gen/lcm/.made
 endif
 
@@ -56,7 +57,8 @@ ifneq ($(and $(HAVE_OPENCV),$(OPENCV_SHIMS)),)
 MODULES += build/lib/vsss_opencv.so
 build/lib/vsss_opencv.so: $(OPENCV_SHIMS) $(wildcard src/vision/*.h include/vsss/*.h) build/features.mk
 	@mkdir -p $(@D)
-	$(CXX) -std=gnu++17 $(MODULE_WARN) $(MODULE_FLAGS) -isystem /usr/include/opencv4 -o $@ $(OPENCV_SHIMS) \
+	@echo '  CXX   $@'
+	$(Q)$(CXX) -std=gnu++17 $(MODULE_WARN) $(MODULE_FLAGS) -isystem /usr/include/opencv4 -o $@ $(OPENCV_SHIMS) \
 	  -lopencv_calib3d -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
 endif
 
@@ -65,7 +67,8 @@ ifneq ($(and $(HAVE_TORCH),$(TORCH_SHIMS)),)
 MODULES += build/lib/vsss_torch.so
 build/lib/vsss_torch.so: $(TORCH_SHIMS) $(wildcard src/learn/*.h include/vsss/*.h) build/features.mk
 	@mkdir -p $(@D)
-	$(CXX) -std=gnu++17 $(MODULE_WARN) $(MODULE_FLAGS) -isystem /usr/include/torch/csrc/api/include -o $@ $(TORCH_SHIMS) \
+	@echo '  CXX   $@'
+	$(Q)$(CXX) -std=gnu++17 $(MODULE_WARN) $(MODULE_FLAGS) -isystem /usr/include/torch/csrc/api/include -o $@ $(TORCH_SHIMS) \
 	  -ltorch -ltorch_cpu -lc10
 endif
 
@@ -74,7 +77,8 @@ ifneq ($(and $(HAVE_MPI),$(MPI_SHIMS)),)
 MODULES += build/lib/vsss_mpi.so
 build/lib/vsss_mpi.so: $(MPI_SHIMS) $(wildcard src/learn/*.h include/vsss/*.h) build/features.mk
 	@mkdir -p $(@D)
-	$(CC) -std=gnu11 $(MODULE_WARN) $(MODULE_FLAGS) -isystem $(firstword $(wildcard /usr/lib/*/openmpi/include)) -o $@ $(MPI_SHIMS) -lmpi
+	@echo '  CC    $@'
+	$(Q)$(CC) -std=gnu11 $(MODULE_WARN) $(MODULE_FLAGS) -isystem $(firstword $(wildcard /usr/lib/*/openmpi/include)) -o $@ $(MPI_SHIMS) -lmpi
 endif
 FEATURE_EXCLUDE += $(MPI_SHIMS)
 
