@@ -120,7 +120,8 @@ fetch_library() {
   python=python3 # the first one with pip: a version manager's may come without
   $python -m pip --version >/dev/null 2>&1 || python=/usr/bin/python3
   $python -m pip download -q --no-deps --only-binary=:all: --require-hashes --python-version 3.11 --implementation cp \
-    --abi cp311 --platform $wheel_platform -d build/wheel -r build/wheel/requirements.txt
+    --abi cp311 --platform $wheel_platform -d build/wheel -r build/wheel/requirements.txt ||
+    die "pip could not fetch onnxruntime==$ort_version (its reason is above): mend the network or pip's configuration and run this again"
   unzip -q -o build/wheel/onnxruntime-*.whl 'onnxruntime/capi/libonnxruntime.so.*' 'onnxruntime/LICENSE' \
     'onnxruntime/ThirdPartyNotices.txt' -d build/wheel/unpacked
   cp build/wheel/unpacked/onnxruntime/LICENSE build/wheel/unpacked/onnxruntime/ThirdPartyNotices.txt $ort_dir
