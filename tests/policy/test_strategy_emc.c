@@ -1,0 +1,115 @@
+// src/policy/strategy_emc.c
+#include "policy/strategy_emc.h"
+#include "vectors.h"
+#include "vsss/field.h"
+#include "vsss/policy.h"
+
+// Columns of emc2019.csv.gz.
+enum { SEQ, TICK, TIME, BALL, ROBOT = 5, ROBOT_STEP = 5, OUT = 20, OUT_STEP = 4, ROLES = 32 };
+
+static emc_input input_of(const vectors *v) {
+  emc_input in = {.ball = {vectors_number(v, BALL) + 0.81, vectors_number(v, BALL + 1) + 0.63}, .dt_s = 0.033333};
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    int c = ROBOT + i * ROBOT_STEP;
+    in.at[i] = (vs_point){vectors_number(v, c) + 0.81, vectors_number(v, c + 1) + 0.63};
+    in.theta_rad[i] = vectors_number(v, c + 2);
+    in.wheel_mps[i][0] = vectors_number(v, c + 3);
+    in.wheel_mps[i][1] = vectors_number(v, c + 4);
+  }
+  return in;
+}
+
+static void assert_tick(const vectors *v, const emc_state *s, const emc_output *out, double *worst) {
+  const char *letter = "ADG";
+  for (int r = 0; r < EMC_ROLES; r++)
+    if (v->column[ROLES][s->role[r].robot] != letter[r])
+      fail_msg("sequence %s tick %s: roles %s, robot %d is %c here", v->column[SEQ], v->column[TICK], v->column[ROLES],
+               s->role[r].robot, letter[r]);
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    for (int w = 0; w < 2; w++) {
+      double target = fabs(out->target_mps[i][w] - vectors_number(v, OUT + i * OUT_STEP + w));
+      double pid = fabs(out->pid_mps[i][w] - vectors_number(v, OUT + i * OUT_STEP + 2 + w));
+      if (!(target <= 2e-4) || !(pid <= 1e-3))
+        fail_msg("sequence %s tick %s robot %d wheel %d (roles %s): target off by %g m/s, out by %g m/s",
+                 v->column[SEQ], v->column[TICK], i, w, v->column[ROLES], target, pid);
+      worst[0] = fmax(worst[0], target);
+      worst[1] = fmax(worst[1], pid);
+    }
+  }
+}
+
+static void every_recorded_tick_of_the_original_is_repeated(void **state) {
+  (void)state;
+  vectors v;
+  if (!vectors_open(&v, "emc2019", VECTORS_COMMANDS)) return;
+  emc_state s;
+  int commands = 0;
+  double worst[2] = {0};
+  for (; vectors_next(&v); commands += VS_TEAM_SIZE) {
+    if (vectors_number(&v, TICK) == 0) emc_init(&s);
+    emc_input in = input_of(&v);
+    emc_output out;
+    emc_tick(&s, &in, &out);
+    assert_tick(&v, &s, &out, worst);
+  }
+  vectors_close(&v);
+  assert_int_equal(commands, VECTORS_COMMANDS);
+  printf("%d commands, worst target %.2g m/s, worst out %.2g m/s\n", commands, worst[0], worst[1]);
+}
+
+static vs_world world_of(const vectors *v) {
+  vs_world world = {0};
+  world.ball.x_m = vectors_number(v, BALL);
+  world.ball.y_m = vectors_number(v, BALL + 1);
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    int c = ROBOT + i * ROBOT_STEP;
+    vs_robot *r = &world.robot[VS_OWN][i];
+    r->pose = (vs_pose){vectors_number(v, c), vectors_number(v, c + 1), vectors_number(v, c + 2)};
+    r->left_radps = vectors_number(v, c + 3) / VS_WHEEL_RADIUS_M;
+    r->right_radps = vectors_number(v, c + 4) / VS_WHEEL_RADIUS_M;
+  }
+  return world;
+}
+
+// The player's commands are those of the column at `first`, in rad/s of a 3 cm wheel, within the wheel's limit.
+static void assert_player_repeats(const char *uri, int first, double tolerance_mps) {
+  vectors v;
+  if (!vectors_open(&v, "emc2019", VECTORS_COMMANDS)) return;
+  vs_player *player;
+  assert_ok(vs_player_open(uri, &player, err));
+  while (vectors_next(&v)) {
+    if (vectors_number(&v, TICK) == 0) assert_ok(vs_player_reset(player, 1, err));
+    vs_world world = world_of(&v);
+    vs_game game = {0};
+    vs_wheels out[VS_TEAM_SIZE];
+    assert_ok(vs_player_step(player, &world, &game, 0.033333, out, err));
+    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+      int c = first + i * OUT_STEP;
+      double left = vs_clamp(vectors_number(&v, c) / 0.03, -VS_WHEEL_LIMIT_RADPS, VS_WHEEL_LIMIT_RADPS);
+      double right = vs_clamp(vectors_number(&v, c + 1) / 0.03, -VS_WHEEL_LIMIT_RADPS, VS_WHEEL_LIMIT_RADPS);
+      assert_near(out[i].left_radps, left, tolerance_mps / 0.03);
+      assert_near(out[i].right_radps, right, tolerance_mps / 0.03);
+    }
+  }
+  vs_player_close(player);
+  vectors_close(&v);
+}
+
+static void player_sends_the_recorded_wheel_targets(void **state) {
+  (void)state;
+  assert_player_repeats("emc:", OUT, 2e-4);
+}
+
+static void player_with_pid_sends_the_recorded_outputs(void **state) {
+  (void)state;
+  assert_player_repeats("emc:?pid=1", OUT + 2, 1e-3);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_recorded_tick_of_the_original_is_repeated),
+      cmocka_unit_test(player_sends_the_recorded_wheel_targets),
+      cmocka_unit_test(player_with_pid_sends_the_recorded_outputs),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

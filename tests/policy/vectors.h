@@ -1,0 +1,58 @@
+// Reads the recorded behaviour of the original opponents: $VSSS_REFERENCE_DATA/opponents/NAME.csv.gz, 54,000 robot
+// commands each. Without the variable a test prints how many checks it leaves out and goes on.
+#ifndef VSSS_TESTS_POLICY_VECTORS_H
+#define VSSS_TESTS_POLICY_VECTORS_H
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "assert_near.h"
+
+#define VECTORS_COMMANDS 54000
+#define VECTORS_COLUMNS  48
+
+typedef struct vectors {
+  FILE *pipe;
+  char line[2048];
+  char *column[VECTORS_COLUMNS]; // of the present row; missing ones are ""
+} vectors;
+
+// False: the variable is not set. checks: how many values the caller would have compared.
+static bool vectors_open(vectors *v, const char *name, int checks) {
+  const char *folder = getenv("VSSS_REFERENCE_DATA");
+  if (!folder || !*folder) {
+    printf("note: %d checks not run: VSSS_REFERENCE_DATA is not set\n", checks);
+    return false;
+  }
+  char command[1200], path[1100];
+  snprintf(path, sizeof path, "%s/opponents/%s.csv.gz", folder, name);
+  FILE *there = fopen(path, "rb");
+  if (!there) fail_msg("%s: cannot be read", path);
+  fclose(there);
+  snprintf(command, sizeof command, "gzip -dc '%s'", path);
+  v->pipe = popen(command, "r");
+  assert_non_null(v->pipe);
+  assert_non_null(fgets(v->line, sizeof v->line, v->pipe)); // the header line
+  return true;
+}
+
+static bool vectors_next(vectors *v) {
+  if (!fgets(v->line, sizeof v->line, v->pipe)) return false;
+  v->line[strcspn(v->line, "\r\n")] = '\0';
+  static char empty[1] = "";
+  char *at = v->line;
+  for (int i = 0; i < VECTORS_COLUMNS; i++) {
+    v->column[i] = at ? at : empty;
+    char *comma = at ? strchr(at, ',') : NULL;
+    if (comma) *comma = '\0';
+    at = comma ? comma + 1 : NULL;
+  }
+  return true;
+}
+
+static double vectors_number(const vectors *v, int column) { return strtod(v->column[column], NULL); }
+
+static void vectors_close(vectors *v) { assert_int_equal(pclose(v->pipe), 0); }
+
+#endif
