@@ -12,14 +12,16 @@
 extern "C" {
 #endif
 
+#define VS_RENDER_PATCH_M 0.06 // what a camera finds adversaries by (detect.h, VS_PATCH_M)
+
 typedef enum vs_view { VS_VIEW_BROADCAST, VS_VIEW_CAMERA } vs_view;
 
 typedef struct vs_render_def {
   vs_view view;
   int width_px, height_px; // 64..3840 x 64..2160
-  // The picture on each robot's cap: square, cap_px x cap_px bytes of grey, row 0 on the robot's left, column 0 at its
-  // back seen from above (so "up" in the picture is the robot's left and "right" its front); cap_size_m is the printed
-  // width. NULL: a team-coloured cap with two identity patches. Read by vs_render_new only.
+  // The picture on each robot's cap: square, cap_px x cap_px bytes of grey, row 0 at the robot's front, column 0 on its
+  // left (a tag pattern as tag.h gives it); cap_size_m is the printed width. NULL: the team's colour with two identity
+  // patches, or for CAMERA a dark cap with a team-coloured square of VS_RENDER_PATCH_M. Read by vs_render_new only.
   const uint8_t *cap[VS_TEAMS][VS_TEAM_SIZE];
   int cap_px;
   double cap_size_m;
@@ -40,8 +42,8 @@ void vs_render_free(vs_render *render); // NULL is allowed
 vs_status vs_render_world(vs_render *render, const vs_world *world, const vs_game *game, uint8_t *rgb, vs_error *err);
 
 // The CAMERA view's exact geometry: square pixels, no distortion, looking straight down on the field's centre, with the
-// image's right = +x and its top = +y. Pixel (0, 0) is the top left CORNER of the picture, so the centre of the
-// first pixel is at (0.5, 0.5): x_px = cx_px + focal_px * x_m / (height_m - z_m), y_px = cy_px - focal_px * y_m / ...
+// image's right = +x and its top = +y. Pixel centres are at integers (calib.h): the middle of 640 pixels is 319.5.
+// x_px = cx_px + focal_px * x_m / (height_m - z_m), y_px = cy_px - focal_px * y_m / (height_m - z_m).
 typedef struct vs_pinhole {
   int width_px, height_px;
   double focal_px, cx_px, cy_px;
