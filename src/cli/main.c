@@ -12,6 +12,7 @@ typedef struct command {
 } command;
 
 static const command commands[] = {
+    {"train", cmd_train, "learn by self-play; writes a policy as ONNX"},
     {NULL, NULL, NULL},
 };
 

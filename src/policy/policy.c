@@ -45,14 +45,7 @@ static vs_status open_plugin(vs_player *player, const scheme *s, vs_error *err) 
 static vs_status open_onnx(vs_player *player, const scheme *s, vs_error *err) {
   const char *rest = player->uri + strlen(s->name);
   if (!*player->rest) return vs_fail(err, VS_USAGE, "onnx: needs a file, as in onnx:models/policy/vsss.onnx");
-#ifdef VSSS_HAVE_ONNX
   return vs_policy_onnx_open(rest, &player->learned, err);
-#else
-  return vs_fail(err, VS_FAIL,
-                 "onnx:%s: this build has no ONNX Runtime: install libonnxruntime-dev (Debian 13; deploy/setup.sh "
-                 "knows how on Debian 12) and run make again",
-                 rest);
-#endif
 }
 
 static vs_status open_provided(vs_player *player, const scheme *s, vs_error *err) {

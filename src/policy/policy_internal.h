@@ -16,7 +16,7 @@ struct vs_obs_player {
   const char *name; // for tables, such as the model's own name; lives as long as the player
 };
 
-// policy_onnx.c, compiled where ONNX Runtime is there (VSSS_HAVE_ONNX is then defined for the whole build). rest: what
+// policy_onnx.c, or policy_onnx_stub.c where ONNX Runtime is missing. rest: what
 // follows "onnx:", a file name, perhaps with "?options".
 vs_status vs_policy_onnx_open(const char *rest, vs_obs_player **out, vs_error *err);
 

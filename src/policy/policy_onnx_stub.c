@@ -1,0 +1,8 @@
+// Takes policy_onnx.c's place where the headers of ONNX Runtime are missing.
+#include "policy_internal.h"
+
+vs_status vs_policy_onnx_open(const char *rest, vs_obs_player **out, vs_error *err) {
+  *out = NULL;
+  return vs_fail(err, VS_FAIL, "onnx:%s: this build has no ONNX Runtime: run 'sudo sh deploy/setup.sh', then make",
+                 rest);
+}

@@ -1,0 +1,247 @@
+// Tests src/policy/policy_onnx.c with files of src/learn/onnx_writer.c: ONNX Runtime against a plain C network, and
+// every way in which a file can be wrong.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "assert_near.h"
+#include "learn/export.h"
+#include "vsss/learn.h"
+#include "vsss/policy.h"
+#include "vsss/rng.h"
+#include "vsss/world.h"
+
+enum { OBSERVATIONS = 1000, W0 = 48, W1 = 32, ACTOR_OUTPUTS = 4 };
+
+// A fresh network with large weights, so that tanh and softplus leave their linear part.
+static void make_net(vs_net *net, float **parameters) {
+  const vs_net_shape shape = {VS_OBS_SIZE, 2, {W0, W1}, VS_ACTION_SIZE, true};
+  assert_ok(vs_net_init(net, &shape, err));
+  *parameters = malloc(net->size * sizeof **parameters);
+  vs_rng rng = vs_rng_make(7, 0);
+  for (size_t i = 0; i < net->size; i++) (*parameters)[i] = (float)vs_rng_range(&rng, -0.3, 0.3);
+}
+
+// The oracle: the same network in double, one value at a time, straight from the definition in net.h.
+static void plain_forward(const vs_net *net, const float *p, const float *x, double action[2]) {
+  double h0[W0], h1[W1], raw[ACTOR_OUTPUTS];
+  for (int j = 0; j < W0; j++) {
+    double sum = p[net->bias[0] + (size_t)j];
+    for (int i = 0; i < VS_OBS_SIZE; i++) sum += (double)x[i] * p[net->weight[0][VS_ACTOR] + (size_t)(i * 2 * W0 + j)];
+    h0[j] = tanh(sum);
+  }
+  for (int j = 0; j < W1; j++) {
+    double sum = p[net->bias[1] + (size_t)j];
+    for (int i = 0; i < W0; i++) sum += h0[i] * p[net->weight[1][VS_ACTOR] + (size_t)(i * W1 + j)];
+    h1[j] = tanh(sum);
+  }
+  for (int j = 0; j < ACTOR_OUTPUTS; j++) {
+    raw[j] = p[net->head_bias[VS_ACTOR] + (size_t)j];
+    for (int i = 0; i < W1; i++) raw[j] += h1[i] * p[net->head_weight[VS_ACTOR] + (size_t)(j * W1 + i)];
+  }
+  for (int k = 0; k < 2; k++) {
+    double alpha = 1.0 + log1p(exp(raw[k])), beta = 1.0 + log1p(exp(raw[2 + k]));
+    action[k] = 2.0 * alpha / (alpha + beta) - 1.0;
+  }
+}
+
+static char folder[] = "build/onnx_test_XXXXXX";
+static char file[128];
+
+static void write_model(const vs_net *net, const float *parameters) {
+  const vs_onnx_note note = {"seed", "7"};
+  assert_ok(vs_export_actor(file, net, parameters, "test", false, &note, 1, err));
+}
+
+static vs_status open_file(vs_player **player, vs_error *err) {
+  char uri[200];
+  snprintf(uri, sizeof uri, "onnx:%s", file);
+  return vs_player_open(uri, player, err);
+}
+
+static void onnx_runtime_agrees_with_plain_c_on_1000_observations(void **state) {
+  (void)state;
+  vs_net net;
+  float *parameters;
+  make_net(&net, &parameters);
+  write_model(&net, parameters);
+  vs_player *player = NULL;
+  assert_ok(open_file(&player, err));
+  assert_int_equal(vs_player_kind(player), VS_SEES_OBSERVATION);
+  float *obs = malloc(OBSERVATIONS * VS_OBS_SIZE * sizeof *obs), *action = malloc(OBSERVATIONS * 2 * sizeof *action);
+  vs_rng rng = vs_rng_make(8, 0);
+  for (int i = 0; i < OBSERVATIONS * VS_OBS_SIZE; i++) obs[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
+  assert_ok(vs_player_act(player, obs, OBSERVATIONS, action, err));
+  double spread = 0.0;
+  for (int i = 0; i < OBSERVATIONS; i++) {
+    double expected[2];
+    plain_forward(&net, parameters, obs + i * VS_OBS_SIZE, expected);
+    for (int k = 0; k < 2; k++) assert_near(action[2 * i + k], expected[k], 1e-5);
+    spread = fmax(spread, fabs(expected[0]));
+  }
+  assert_true(spread > 0.1); // the network says something
+  // One row at a time gives the very same bits as all at once.
+  for (int i = 0; i < 50; i++) {
+    float alone[2];
+    assert_ok(vs_player_act(player, obs + i * VS_OBS_SIZE, 1, alone, err));
+    assert_memory_equal(alone, action + 2 * i, sizeof alone);
+  }
+  vs_player_close(player);
+  free(action);
+  free(obs);
+  free(parameters);
+}
+
+static void expect_refusal(const char *why) {
+  vs_player *player = NULL;
+  vs_error err = {0};
+  assert_int_equal(open_file(&player, &err), VS_FAIL);
+  if (!strstr(err.text, why) || !strstr(err.text, file) || strchr(err.text, '\n'))
+    fail_msg("expected one line with the file and '%s': %s", why, err.text);
+  assert_null(player);
+}
+
+static void read_file(char **data, size_t *size) {
+  FILE *f = fopen(file, "rb");
+  assert_non_null(f);
+  *data = malloc(1 << 22);
+  *size = fread(*data, 1, 1 << 22, f);
+  fclose(f);
+}
+
+static void write_file(const char *data, size_t size) {
+  FILE *f = fopen(file, "wb");
+  assert_non_null(f);
+  assert_int_equal(fwrite(data, 1, size, f), size);
+  fclose(f);
+}
+
+static void a_truncated_file_is_refused_at_every_length(void **state) {
+  (void)state;
+  vs_net net;
+  float *parameters;
+  char *data;
+  size_t size;
+  make_net(&net, &parameters);
+  write_model(&net, parameters);
+  read_file(&data, &size);
+  for (int part = 0; part < 10; part++) {
+    write_file(data, size * (size_t)part / 10);
+    expect_refusal("");
+  }
+  write_file(data, size / 2);
+  expect_refusal("truncated");
+  free(data);
+  free(parameters);
+}
+
+static void swap_text(const char *from, const char *to) {
+  char *data;
+  size_t size;
+  read_file(&data, &size);
+  size_t n = strlen(from), found = 0;
+  for (size_t i = 0; i + n <= size; i++)
+    if (memcmp(data + i, from, n) == 0) memcpy(data + i, to, n), found++;
+  assert_true(found > 0);
+  write_file(data, size);
+  free(data);
+}
+
+static void a_model_of_another_contract_is_refused(void **state) {
+  (void)state;
+  vs_net net;
+  float *parameters;
+  make_net(&net, &parameters);
+  write_model(&net, parameters);
+  swap_text(vs_contract_hash_hex(), "0123456789abcdef");
+  expect_refusal("made for contract 0123456789abcdef");
+  write_model(&net, parameters);
+  swap_text("contract", "kontract");
+  expect_refusal("no 'contract'");
+  write_model(&net, parameters);
+  swap_text("action", "aktion");
+  expect_refusal("no output 'action'");
+  write_model(&net, parameters);
+  swap_text("observation", "observateon");
+  expect_refusal("no input 'observation'");
+  free(parameters);
+}
+
+static void a_network_of_other_sizes_is_not_written(void **state) {
+  (void)state;
+  const vs_net_shape shape = {VS_OBS_SIZE - 1, 1, {8}, VS_ACTION_SIZE, false};
+  vs_net net;
+  assert_ok(vs_net_init(&net, &shape, err));
+  float *parameters = calloc(net.size, sizeof *parameters);
+  vs_error err = {0};
+  assert_int_equal(vs_export_actor(file, &net, parameters, "test", false, NULL, 0, &err), VS_FAIL);
+  assert_non_null(strstr(err.text, "463 -> 4"));
+  free(parameters);
+}
+
+static void a_missing_file_and_a_wrong_option_are_named(void **state) {
+  (void)state;
+  unlink(file);
+  expect_refusal("No such file");
+  vs_player *player = NULL;
+  vs_error err = {0};
+  assert_int_equal(vs_player_open("onnx:", &player, &err), VS_USAGE);
+  assert_int_equal(vs_player_open("onnx:build/untrained.onnx?fast=1", &player, &err), VS_USAGE);
+  assert_non_null(strstr(err.text, "fast=1"));
+}
+
+static void the_untrained_policy_is_the_same_for_the_same_seed_and_acts(void **state) {
+  (void)state;
+  char *first, *second;
+  size_t first_size, second_size;
+  assert_ok(vs_learn_write_untrained(file, 1, err));
+  read_file(&first, &first_size);
+  assert_ok(vs_learn_write_untrained(file, 1, err));
+  read_file(&second, &second_size);
+  assert_int_equal(first_size, second_size);
+  assert_memory_equal(first, second, first_size);
+  vs_player *player = NULL;
+  assert_ok(open_file(&player, err));
+  float obs[3][VS_OBS_SIZE] = {{0}}, action[3][2] = {{9, 9}, {9, 9}, {9, 9}};
+  assert_ok(vs_player_act(player, obs[0], 3, action[0], err));
+  // No input, no preference: alpha = beta up to the rounding of the head's bias.
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 2; k++) assert_near(action[i][k], 0.0, 1e-6);
+  vs_player_close(player);
+  free(first);
+  free(second);
+}
+
+static int set_up(void **state) {
+  (void)state;
+  if (!mkdtemp(folder)) return -1;
+  snprintf(file, sizeof file, "%s/model.onnx", folder);
+  return 0;
+}
+
+static int tear_down(void **state) {
+  (void)state;
+  unlink(file);
+  return rmdir(folder);
+}
+
+int main(void) {
+  // A build without ONNX Runtime has nothing to test but its message.
+  vs_player *player = NULL;
+  vs_error err = {0};
+  vs_player_open("onnx:build/none.onnx", &player, &err);
+  if (strstr(err.text, "no ONNX Runtime")) {
+    printf("note: 6 checks not run: this build has no ONNX Runtime\n");
+    return 0;
+  }
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(onnx_runtime_agrees_with_plain_c_on_1000_observations),
+      cmocka_unit_test(a_truncated_file_is_refused_at_every_length),
+      cmocka_unit_test(a_model_of_another_contract_is_refused),
+      cmocka_unit_test(a_network_of_other_sizes_is_not_written),
+      cmocka_unit_test(a_missing_file_and_a_wrong_option_are_named),
+      cmocka_unit_test(the_untrained_policy_is_the_same_for_the_same_seed_and_acts),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
