@@ -38,6 +38,9 @@ $(B)/gen/lcm/%.o: build/gen/lcm/%.c
 $(LCM_SRC:%.c=$(B)/%.o): build/gen/lcm/.made
 endif
 
+# The robots' firmware, which the rig runs; plain C that no other part of the program is in.
+FEATURE_OBJ += $(B)/deploy/firmware/firmware.o
+
 # AprilTag: the image and matrix helpers are in a second library that pkg-config does not name.
 FEATURE_EXCLUDE += $(call choose,APRILTAG,src/vision/detect_tags.c)
 FEATURE_LIBS += $(if $(HAVE_APRILTAG),-lapriltag -lapriltag-utils)
