@@ -1,0 +1,76 @@
+// The PPO learner: parameters, Adam, and the update from one batch of transitions. The gradient of a minibatch comes
+// from our own kernels, or from libtorch (learner_torch.cpp) as their oracle.
+#ifndef VSSS_LEARN_LEARNER_H
+#define VSSS_LEARN_LEARNER_H
+
+#include "blas.h"
+#include "net.h"
+#include "pool.h"
+#include "ppo.h"
+#include "vsss/rng.h"
+
+// Ranks that train together; NULL where a function takes one: alone. Every rank calls in the same order.
+typedef struct vs_group {
+  int rank, size;
+  void *self;
+  vs_status (*sum_floats)(void *self, float *values, size_t count, vs_error *err); // in place, over all ranks
+  vs_status (*sum_doubles)(void *self, double *values, size_t count, vs_error *err);
+} vs_group;
+
+typedef struct vs_learner_def {
+  vs_net_shape shape; // with a critic
+  vs_ppo_def ppo;
+  double learning_rate, adam_beta1, adam_beta2, adam_epsilon, max_gradient_norm;
+  double first_shape; // alpha = beta of the untrained policy
+  int epochs, minibatch;
+  int pieces; // a minibatch is computed in this many parts, whatever the number of threads
+} vs_learner_def;
+
+// One batch: the transitions of this rank. Arrays as in vs_ppo_batch, in any order; advantage not normalised.
+typedef struct vs_learner_stats {
+  vs_ppo_stats last;         // sums over the last epoch
+  double gradient_norm;      // mean before clipping, of the last epoch
+  double explained_variance; // 1 - var(target - old value)/var(target)
+} vs_learner_stats;
+
+// Gradient of one minibatch by another library: same meaning as the kernels' (mean over total_rows), written to gradient.
+typedef struct vs_gradient_engine {
+  void *self;
+  vs_status (*gradient)(void *self, const vs_net *net, const vs_ppo_def *def, const float *parameters,
+                        const vs_ppo_batch *batch, double total_rows, float *gradient, vs_ppo_stats *stats,
+                        vs_error *err);
+  void (*free)(void *self);
+} vs_gradient_engine;
+
+typedef struct vs_learner {
+  vs_learner_def def;
+  vs_net net;
+  vs_blas blas;
+  vs_pool *pool;                     // borrowed
+  const vs_group *group;             // borrowed; NULL: alone
+  const vs_gradient_engine *engine;  // borrowed; NULL: our kernels
+  float *parameters, *mean, *square; // [net.size], one block; what a checkpoint keeps, with steps
+  long long steps;                   // of Adam
+  struct vs_learner_part *part;      // [pieces]: workspaces
+  float *gradient;                   // [net.size]
+  int *order;                        // permutation of the batch
+  size_t order_size;
+} vs_learner;
+
+vs_status vs_learner_init(vs_learner *learner, const vs_learner_def *def, vs_pool *pool, uint64_t seed, vs_error *err);
+void vs_learner_free(vs_learner *learner);
+
+// epochs over the batch in random minibatches drawn from seed. With a group, the batch is the ranks' batches together
+// (all of the same number of rows) and the update is that of one rank that held them all.
+vs_status vs_learner_update(vs_learner *learner, const vs_ppo_batch *batch, uint64_t seed, vs_learner_stats *stats,
+                            vs_error *err);
+
+// The gradient of one minibatch of this rank's rows into learner->gradient (summed over the group).
+vs_status vs_learner_gradient(vs_learner *learner, const vs_ppo_batch *batch, const int *rows, int count,
+                              double total_rows, double advantage_mean, double advantage_scale, vs_ppo_stats *stats,
+                              vs_error *err);
+
+// One step of Adam by learner->gradient, its norm limited; returns the norm before.
+double vs_learner_step(vs_learner *learner);
+
+#endif

@@ -1,0 +1,172 @@
+// Tests src/learn/net.c
+#include <stdlib.h>
+#include <string.h>
+
+#include "assert_near.h"
+#include "learn/net.h"
+
+enum { ROWS = 7, INPUTS = 6 };
+static const vs_net_shape small = {INPUTS, 3, {5, 4, 3}, 2, true};
+
+typedef struct fixture {
+  vs_net net;
+  vs_blas blas;
+  vs_net_work work;
+  float *parameters, x[ROWS * INPUTS], draw[ROWS * 4], dvalue[ROWS];
+} fixture;
+
+static void set_up(fixture *f) {
+  assert_ok(vs_blas_open(&f->blas, err));
+  assert_ok(vs_net_init(&f->net, &small, err));
+  assert_ok(vs_net_work_init(&f->work, &f->net, ROWS, true, err));
+  f->parameters = malloc(f->net.size * sizeof *f->parameters);
+  vs_rng rng = vs_rng_make(2, 0);
+  for (size_t i = 0; i < f->net.size; i++) f->parameters[i] = (float)vs_rng_range(&rng, -0.8, 0.8);
+  for (int i = 0; i < ROWS * INPUTS; i++) f->x[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
+  for (int i = 0; i < ROWS * 4; i++) f->draw[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
+  for (int i = 0; i < ROWS; i++) f->dvalue[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
+}
+
+static void tear_down(fixture *f) {
+  vs_net_work_free(&f->work);
+  free(f->parameters);
+}
+
+// The same network in double, one value after the other.
+static void plain(const vs_net *net, const float *p, const float *x, double raw[4], double *value) {
+  const vs_net_shape *s = &net->shape;
+  for (int n = 0; n < net->nets; n++) {
+    double in[16], out[16];
+    for (int i = 0; i < s->inputs; i++) in[i] = x[i];
+    for (int l = 0; l < s->layers; l++) {
+      int before = l ? s->width[l - 1] : s->inputs, stride = l ? s->width[l] : net->nets * s->width[0];
+      for (int j = 0; j < s->width[l]; j++) {
+        out[j] = p[net->bias[l] + (size_t)(n * s->width[l] + j)];
+        for (int i = 0; i < before; i++) out[j] += in[i] * p[net->weight[l][n] + (size_t)(i * stride + j)];
+      }
+      for (int j = 0; j < s->width[l]; j++) in[j] = tanh(out[j]);
+    }
+    int last = s->width[s->layers - 1];
+    for (int o = 0; o < vs_net_outputs(net, n); o++) {
+      double sum = p[net->head_bias[n] + (size_t)o];
+      for (int i = 0; i < last; i++) sum += in[i] * p[net->head_weight[n] + (size_t)(o * last + i)];
+      if (n == VS_ACTOR) raw[o] = sum;
+      if (n == VS_CRITIC) *value = sum;
+    }
+  }
+}
+
+static void the_forward_pass_agrees_with_a_plain_network(void **state) {
+  (void)state;
+  fixture f;
+  set_up(&f);
+  vs_net_forward(&f.net, &f.blas, f.parameters, f.x, ROWS, &f.work);
+  for (int r = 0; r < ROWS; r++) {
+    double raw[4], value;
+    plain(&f.net, f.parameters, f.x + r * INPUTS, raw, &value);
+    for (int o = 0; o < 4; o++) assert_near(f.work.raw[r * 4 + o], raw[o], 2e-6);
+    assert_near(f.work.value[r], value, 2e-6);
+  }
+  tear_down(&f);
+}
+
+// Loss = sum of draw * raw + dvalue * value, whose derivatives by the outputs are draw and dvalue.
+static double loss(fixture *f) {
+  double sum = 0.0;
+  for (int r = 0; r < ROWS; r++) {
+    double raw[4], value;
+    plain(&f->net, f->parameters, f->x + r * INPUTS, raw, &value);
+    for (int o = 0; o < 4; o++) sum += f->draw[r * 4 + o] * raw[o];
+    sum += f->dvalue[r] * value;
+  }
+  return sum;
+}
+
+static void every_gradient_agrees_with_finite_differences(void **state) {
+  (void)state;
+  fixture f;
+  set_up(&f);
+  float *gradient = malloc(f.net.size * sizeof *gradient);
+  for (size_t i = 0; i < f.net.size; i++) gradient[i] = NAN; // all of it must be written
+  vs_net_forward(&f.net, &f.blas, f.parameters, f.x, ROWS, &f.work);
+  vs_net_backward(&f.net, &f.blas, f.parameters, f.x, ROWS, f.draw, f.dvalue, &f.work, gradient);
+  for (size_t i = 0; i < f.net.size; i++) {
+    float kept = f.parameters[i], up = kept + 1e-3f, down = kept - 1e-3f;
+    f.parameters[i] = up;
+    double more = loss(&f);
+    f.parameters[i] = down;
+    double less = loss(&f);
+    f.parameters[i] = kept;
+    assert_near(gradient[i], (more - less) / ((double)up - down), 5e-5);
+  }
+  free(gradient);
+  tear_down(&f);
+}
+
+static void an_extracted_actor_says_the_same(void **state) {
+  (void)state;
+  fixture f;
+  set_up(&f);
+  vs_net actor;
+  vs_net_shape shape = small;
+  shape.critic = false;
+  assert_ok(vs_net_init(&actor, &shape, err));
+  assert_true(actor.size < f.net.size);
+  float *own = malloc(actor.size * sizeof *own);
+  vs_net_work work;
+  assert_ok(vs_net_work_init(&work, &actor, ROWS, false, err));
+  vs_net_extract_actor(&f.net, f.parameters, &actor, own);
+  vs_net_forward(&actor, &f.blas, own, f.x, ROWS, &work);
+  vs_net_forward(&f.net, &f.blas, f.parameters, f.x, ROWS, &f.work);
+  for (int i = 0; i < ROWS * 4; i++) assert_near(work.raw[i], f.work.raw[i], 1e-6);
+  vs_net_work_free(&work);
+  free(own);
+  tear_down(&f);
+}
+
+// Orthogonal columns of length sqrt 2; alpha = beta = 4 needs 1 + softplus(bias) = 4.
+static void a_fresh_network_is_orthogonal_and_starts_at_the_asked_shape(void **state) {
+  (void)state;
+  const vs_net_shape shape = {20, 2, {8, 8}, 2, true};
+  vs_net net;
+  assert_ok(vs_net_init(&net, &shape, err));
+  float *p = malloc(net.size * sizeof *p);
+  vs_rng rng = vs_rng_make(1, 0);
+  assert_ok(vs_net_randomise(&net, 4.0, &rng, p, err));
+  for (int a = 0; a < 8; a++)
+    for (int b = 0; b < 8; b++) {
+      double first = 0.0, second = 0.0;
+      for (int i = 0; i < 20; i++)
+        first += (double)p[net.weight[0][VS_CRITIC] + (size_t)(i * 16 + a)] *
+                 p[net.weight[0][VS_CRITIC] + (size_t)(i * 16 + b)];
+      for (int i = 0; i < 8; i++)
+        second +=
+            (double)p[net.weight[1][VS_ACTOR] + (size_t)(i * 8 + a)] * p[net.weight[1][VS_ACTOR] + (size_t)(i * 8 + b)];
+      assert_near(first, a == b ? 2.0 : 0.0, 1e-5);
+      assert_near(second, a == b ? 2.0 : 0.0, 1e-5);
+    }
+  for (int i = 0; i < 4; i++) assert_near(1.0 + log1p(exp((double)p[net.head_bias[VS_ACTOR] + (size_t)i])), 4.0, 1e-5);
+  free(p);
+}
+
+static void shapes_out_of_range_are_refused_with_the_range(void **state) {
+  (void)state;
+  vs_net net;
+  vs_error err = {0};
+  const vs_net_shape deep = {4, 5, {2, 2, 2, 2}, 2, true}, wide = {4, 1, {5000}, 2, true};
+  assert_int_equal(vs_net_init(&net, &deep, &err), VS_USAGE);
+  assert_non_null(strstr(err.text, "1 to 4"));
+  assert_int_equal(vs_net_init(&net, &wide, &err), VS_USAGE);
+  assert_non_null(strstr(err.text, "1 to 4096"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_forward_pass_agrees_with_a_plain_network),
+      cmocka_unit_test(every_gradient_agrees_with_finite_differences),
+      cmocka_unit_test(an_extracted_actor_says_the_same),
+      cmocka_unit_test(a_fresh_network_is_orthogonal_and_starts_at_the_asked_shape),
+      cmocka_unit_test(shapes_out_of_range_are_refused_with_the_range),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
