@@ -16,11 +16,6 @@ include deploy/features.mk
 # Messages may be cut short: snprintf into a fixed line is how they are made.
 WARN := -Wall -Wextra -Werror -Wno-format-truncation
 OPT := -O2 -g
-# No fused multiply-add: a match must hash the same on every machine and at every optimisation level.
-CFLAGS_ALL := -std=gnu11 $(WARN) $(OPT) -ffp-contract=off -fPIC -pthread -Iinclude -Isrc -isystem build/gen -DVSSS_PREFIX='"$(PREFIX)"' $(FEATURE_CFLAGS) $(SAN) $(CFLAGS)
-CXXFLAGS_ALL := -std=gnu++17 $(WARN) $(OPT) -fPIC -pthread -Iinclude -Isrc $(SAN) $(CXXFLAGS)
-LDLIBS_ALL := $(FEATURE_LIBS) -ldl -lm -pthread
-
 ifeq ($(FLAVOUR),asan)
 SAN := -fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined
 OPT := -O1 -g
@@ -29,6 +24,10 @@ ifeq ($(FLAVOUR),tsan)
 SAN := -fsanitize=thread -fno-omit-frame-pointer
 OPT := -O1 -g
 endif
+# No fused multiply-add: a match must hash the same on every machine and at every optimisation level.
+CFLAGS_ALL := -std=gnu11 $(WARN) $(OPT) -ffp-contract=off -fPIC -pthread -Iinclude -Isrc -isystem build/gen -DVSSS_PREFIX='"$(PREFIX)"' $(FEATURE_CFLAGS) $(SAN) $(CFLAGS)
+CXXFLAGS_ALL := -std=gnu++17 $(WARN) $(OPT) -fPIC -pthread -Iinclude -Isrc $(SAN) $(CXXFLAGS)
+LDLIBS_ALL := $(FEATURE_LIBS) -ldl -lm -pthread
 
 LIB_SRC := $(filter-out $(FEATURE_EXCLUDE),$(wildcard src/*/*.c))
 LIB_SRC := $(filter-out src/cli/main.c,$(LIB_SRC))

@@ -17,6 +17,8 @@ choose = $(if $(HAVE_$(1)),$(2:.c=_stub.c),$(2))
 
 # LCM: lcm_types/NAME.lcm holds struct NAME of package vsss; lcm-gen makes build/gen/lcm/vsss_NAME.{c,h}.
 FEATURE_EXCLUDE += $(call choose,LCM,src/comms/bus.c)
+LCM_SRC := src/comms/bus_encode.c src/comms/bus_decode.c
+FEATURE_EXCLUDE += $(if $(HAVE_LCM),,$(LCM_SRC))
 ifneq ($(HAVE_LCM),)
 LCM_TYPES := $(wildcard lcm_types/*.lcm)
 LCM_NAMES := $(LCM_TYPES:lcm_types/%.lcm=vsss_%)
@@ -33,8 +35,11 @@ $(LCM_NAMES:%=build/gen/lcm/%.c): build/gen/lcm/.made ;
 $(B)/gen/lcm/%.o: build/gen/lcm/%.c
 	@mkdir -p $(@D)
 	$(Q)$(CC) -std=gnu11 -w $(OPT) -fPIC $(SAN) -c -o $@ $<
-$(B)/src/comms/bus.o: build/gen/lcm/.made
+$(LCM_SRC:%.c=$(B)/%.o): build/gen/lcm/.made
 endif
+
+# The robots' firmware, which the rig runs; plain C that no other part of the program is in.
+FEATURE_OBJ += $(B)/deploy/firmware/firmware.o
 
 # AprilTag: the image and matrix helpers are in a second library that pkg-config does not name.
 FEATURE_EXCLUDE += $(call choose,APRILTAG,src/vision/detect_tags.c)

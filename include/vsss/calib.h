@@ -17,7 +17,7 @@ typedef struct vs_calib {
   char camera[96]; // vs_camera_info.name it was made with
   char date[32];   // ISO 8601, UTC
   int width, height;
-  double fx_px, fy_px, cx_px, cy_px; // pixel centres are at integers: the middle of 640 is 319.5
+  double fx_px, fy_px, cx_px, cy_px; // coordinates as in camera.h: the middle of 640 is 320
   double k1, k2, p1, p2, k3;
   double rotation[3][3];    // field -> camera (camera: x right, y down, z into the picture)
   double translation_m[3];  // field -> camera

@@ -13,6 +13,9 @@
 extern "C" {
 #endif
 
+// Pixel coordinates everywhere in vision: x right, y down, (0, 0) is the outer corner of the first pixel, so that its
+// middle is (0.5, 0.5) and the middle of a picture 640 wide is x = 320 (libapriltag's convention, not OpenCV's).
+
 // One picture. Row 0 is the top. The pixels belong to whoever filled the frame; a camera's stay whole until the next
 // vs_camera_read or vs_camera_close.
 typedef struct vs_frame {
@@ -21,7 +24,7 @@ typedef struct vs_frame {
   int width, height;   // pixels
   int grey_stride;     // bytes per row, >= width
   int bgr_stride;      // bytes per row, >= 3 * width
-  int64_t capture_us;  // mid-exposure, monotonic clock (clock.h); a recording counts from when it was opened
+  int64_t capture_us;  // mid-exposure, monotonic clock (clock.h); a recording counts from its first read
   uint32_t seq;        // of the source: a gap is a frame that was lost or skipped
 } vs_frame;
 

@@ -1,4 +1,8 @@
 // World in, event out; and where the pieces stand after an event. Pure: reads no clock, moves nothing.
+//
+// Two sets of rules, each a table: the paper's (section V: goal, penalty, free ball) and the league's (the automatic
+// referee of the simulation league, VSSSLeague/VSSReferee, tag LARC2022: also goal kicks, areas judged play by play).
+// The league's pauses between whistle and restart are left out: a restart happens at once.
 #ifndef VSSS_REFEREE_H
 #define VSSS_REFEREE_H
 
@@ -12,16 +16,28 @@ extern "C" {
 typedef enum vs_rules { VS_RULES_PAPER, VS_RULES_LEAGUE } vs_rules;
 typedef enum vs_placement_mode { VS_PLACEMENT_PAPER, VS_PLACEMENT_RANDOM } vs_placement_mode;
 
+// Paper: a ball that has not moved 2 cm for 10 s. League: a ball slower than 0.1 m/s for 5 s, a foul in an area for 3 s,
+// a robot's centre within 1.5 robots of 7.5 cm counts as being at the ball.
+#define VS_STILL_DISTANCE_M     0.02
+#define VS_STILL_S              10.0
+#define VS_LEAGUE_STUCK_MPS     0.1
+#define VS_LEAGUE_STUCK_S       5.0
+#define VS_LEAGUE_FOUL_S        3.0
+#define VS_LEAGUE_NEAR_BALL_M   (1.5 * 0.075)
+#define VS_LEAGUE_GOAL_KICK_X_M 0.60
+#define VS_LEAGUE_GOAL_KICK_Y_M 0.35
+
 typedef struct vs_referee_def {
   vs_rules rules;
   vs_placement_mode placement;
-  double duration_s;        // 120
+  double duration_s;        // 120; both halves together
   int goal_difference_stop; // 10; 0: never
   bool end_at_first_goal;   // training episodes
-  int halves;               // 1 (paper) or 2
+  int halves;               // 1 (paper) or 2 (league); sides are not changed
+  vs_team kick_off;         // who begins
 } vs_referee_def;
 
-vs_referee_def vs_referee_def_default(vs_rules rules); // a match; ranges checked by vs_referee_init
+vs_referee_def vs_referee_def_default(vs_rules rules); // a match: paper 120 s, league 2 x 300 s
 vs_referee_def vs_referee_def_training(void);          // 40 s, first goal ends it, random placement
 
 // Plain data: a copy is a snapshot.
@@ -29,25 +45,34 @@ typedef struct vs_referee {
   vs_referee_def def;
   vs_game game; // clock, score, last event (absolute frame)
   bool over;
-  double still_x_m, still_y_m, still_s;        // where and since when the ball has not moved
-  double area_s[VS_TEAMS], attack_s[VS_TEAMS]; // league: how long a foul has lasted
-  vs_team kick_off;                            // who kicks off next
+  vs_team kick_off; // who kicks off next
+  int half;         // 0 or 1
+  // The ball lies still, by either set of rules' meaning, since still_s seconds, the paper's from this point.
+  double still_x_m, still_y_m, still_s;
+  // League. The team in whose area the ball is (-1: none) and what went wrong there since it came in: for how long two
+  // defenders, two attackers have been in the area, and the match time at which this was last so (-1: not yet).
+  int play_area;
+  double defence_s, attack_s, defence_seen_s, attack_seen_s;
 } vs_referee;
 
+// game.last_event is then the first KICK_OFF, which wants vs_place. VS_USAGE: a number out of range.
 vs_status vs_referee_init(vs_referee *referee, const vs_referee_def *def, vs_error *err);
 // Time goes on by dt_s and the true world is judged. Returns what happened (VS_EVENT_NONE mostly); game is up to date.
-// GOAL, PENALTY, FREE_BALL, GOAL_KICK, HALF_TIME and KICK_OFF want vs_place; END means over (score in game).
+// GOAL, PENALTY, FREE_BALL, GOAL_KICK and HALF_TIME want vs_place and vs_referee_restarted, unless the match is over.
+// It is over after END (time is up) and after a GOAL that ends it (first goal of an episode, goal difference, or time
+// up in the same frame: no END follows then). A match that is over returns NONE.
 vs_event vs_referee_step(vs_referee *referee, const vs_world *world, double dt_s);
-// Forgets the stillness clock after a placement.
+// After a placement: the clocks of stillness and of fouls start anew.
 void vs_referee_restarted(vs_referee *referee, const vs_world *world);
 
-// Legal poses for the restart that event calls for (a goal is followed by the conceding side's kick-off). For paper
-// placement rng is drawn from only where the paper leaves a choice. time_us and seq are left alone.
-void vs_place(vs_rules rules, vs_placement_mode mode, const vs_event *event, const vs_world *before, vs_rng *rng,
-              vs_world *out);
+// Legal poses for the restart that event calls for (a goal is followed by the conceding side's kick-off), everything at
+// rest; time_us and seq are before's. PAPER: the fixed positions, rng is not used; robot 0 keeps the goal and, at a
+// penalty, stands on its line pointed straight at the ball. RANDOM: the ball where the restart puts it, robots anywhere
+// the rules allow, roles and headings random. Events without a placement (NONE, END, HALT) give before itself.
+void vs_place(vs_placement_mode mode, const vs_event *event, const vs_world *before, vs_rng *rng, vs_world *out);
 
-vs_status vs_rules_parse(const char *name, vs_rules *out, vs_error *err);
-vs_status vs_placement_parse(const char *name, vs_placement_mode *out, vs_error *err);
+vs_status vs_rules_parse(const char *name, vs_rules *out, vs_error *err);              // "paper", "league"
+vs_status vs_placement_parse(const char *name, vs_placement_mode *out, vs_error *err); // "paper", "random"
 
 #ifdef __cplusplus
 }

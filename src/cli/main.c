@@ -12,6 +12,7 @@ typedef struct command {
 } command;
 
 static const command commands[] = {
+    {"detect", cmd_detect, "find tags in a picture and print their corners"},
     {"train", cmd_train, "learn by self-play; writes a policy as ONNX"},
     {NULL, NULL, NULL},
 };

@@ -16,8 +16,8 @@ struct vs_obs_player {
   const char *name; // for tables, such as the model's own name; lives as long as the player
 };
 
-// policy_onnx.c, or policy_onnx_stub.c where ONNX Runtime is missing. rest: what
-// follows "onnx:", a file name, perhaps with "?options".
+// policy_onnx.c; policy_onnx_stub.c where ONNX Runtime is missing (deploy/features.mk chooses). rest: what follows
+// "onnx:", a file name, perhaps with "?options".
 vs_status vs_policy_onnx_open(const char *rest, vs_obs_player **out, vs_error *err);
 
 // Built-in players.

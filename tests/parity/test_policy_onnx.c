@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "assert_near.h"
@@ -47,7 +46,7 @@ static void plain_forward(const vs_net *net, const float *p, const float *x, dou
   }
 }
 
-static char folder[64];
+static char folder[] = "build/onnx_test_XXXXXX";
 static char file[128];
 
 static void write_model(const vs_net *net, const float *parameters) {
@@ -216,8 +215,7 @@ static void the_untrained_policy_is_the_same_for_the_same_seed_and_acts(void **s
 
 static int set_up(void **state) {
   (void)state;
-  snprintf(folder, sizeof folder, "build/onnx_test_%d", (int)getpid());
-  if (mkdir(folder, 0755) != 0) return -1;
+  if (!mkdtemp(folder)) return -1;
   snprintf(file, sizeof file, "%s/model.onnx", folder);
   return 0;
 }

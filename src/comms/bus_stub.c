@@ -1,0 +1,63 @@
+// Built in place of bus.c, bus_encode.c and bus_decode.c where LCM is not installed.
+#include "vsss/bus.h"
+
+static vs_status missing(vs_error *err) {
+  return vs_fail(err, VS_FAIL, "this build has no LCM: install liblcm-dev and liblcm-bin and run make again");
+}
+
+vs_status vs_bus_open(const char *url, vs_bus **out, vs_error *err) {
+  (void)url;
+  *out = NULL;
+  return missing(err);
+}
+
+void vs_bus_close(vs_bus *bus) { (void)bus; }
+
+const char *vs_bus_url(const vs_bus *bus) {
+  (void)bus;
+  return "";
+}
+
+vs_status vs_bus_publish(vs_bus *bus, vs_message *message, vs_error *err) {
+  (void)bus, (void)message;
+  return missing(err);
+}
+
+vs_status vs_bus_subscribe(vs_bus *bus, vs_channel channel, bool newest_only, vs_bus_handler handler, void *user,
+                           vs_error *err) {
+  (void)bus, (void)channel, (void)newest_only, (void)handler, (void)user;
+  return missing(err);
+}
+
+vs_status vs_bus_handle(vs_bus *bus, int timeout_ms, int *handled, vs_error *err) {
+  (void)bus, (void)timeout_ms;
+  if (handled) *handled = 0;
+  return missing(err);
+}
+
+int64_t vs_bus_refused(const vs_bus *bus) {
+  (void)bus;
+  return 0;
+}
+
+vs_status vs_bus_subscribe_raw(vs_bus *bus, const char *channel, vs_bus_raw_handler handler, void *user,
+                               vs_error *err) {
+  (void)bus, (void)channel, (void)handler, (void)user;
+  return missing(err);
+}
+
+vs_status vs_bus_publish_raw(vs_bus *bus, const char *channel, const uint8_t *data, size_t size, vs_error *err) {
+  (void)bus, (void)channel, (void)data, (void)size;
+  return missing(err);
+}
+
+size_t vs_message_encode(const vs_message *message, uint8_t *out, size_t out_size) {
+  (void)message, (void)out, (void)out_size;
+  return 0;
+}
+
+vs_status vs_message_decode(vs_channel channel, const uint8_t *data, size_t size, vs_message *out,
+                            uint8_t *image_buffer, vs_error *err) {
+  (void)channel, (void)data, (void)size, (void)out, (void)image_buffer;
+  return missing(err);
+}

@@ -1,0 +1,173 @@
+// Where the pieces stand at a restart, in the view of the team that kicks (it attacks +x): turned for yellow at the end.
+#include <math.h>
+
+#include "referee_internal.h"
+#include "vsss/field.h"
+#include "vsss/geom.h"
+
+// The restarts as the pieces see them.
+typedef struct restart {
+  vs_event_kind kind; // KICK_OFF, PENALTY, FREE_BALL or GOAL_KICK
+  vs_team kicker;
+  double ball_x_m, ball_y_m;
+} restart;
+
+// False where the event places nothing.
+static bool restart_of(const vs_event *event, restart *r) {
+  int quadrant = event->quadrant;
+  double x_side = quadrant == 1 || quadrant == 4 ? 1 : -1, y_side = quadrant == 1 || quadrant == 2 ? 1 : -1;
+  *r = (restart){.kind = event->kind, .kicker = event->team};
+  switch (event->kind) {
+  case VS_EVENT_GOAL: *r = (restart){.kind = VS_EVENT_KICK_OFF, .kicker = vs_other_team(event->team)}; return true;
+  case VS_EVENT_HALF_TIME: r->kind = VS_EVENT_KICK_OFF; return true;
+  case VS_EVENT_KICK_OFF: return true;
+  case VS_EVENT_PENALTY: r->ball_x_m = VS_PENALTY_MARK_X_M; return true;
+  case VS_EVENT_FREE_BALL:
+    r->kicker = VS_BLUE; // nobody's: the absolute frame
+    r->ball_x_m = x_side * VS_FREE_BALL_MARK_X_M;
+    r->ball_y_m = y_side * VS_FREE_BALL_MARK_Y_M;
+    return true;
+  case VS_EVENT_GOAL_KICK:
+    r->ball_x_m = -VS_LEAGUE_GOAL_KICK_X_M;
+    r->ball_y_m = (event->team == VS_YELLOW ? -y_side : y_side) * VS_LEAGUE_GOAL_KICK_Y_M;
+    return true;
+  default: return false;
+  }
+}
+
+// The league's default placements (rules.md's source S7, 3 against 3), kicker first, keeper, attacker, support: x away
+// from the own goal, y shared by both teams. The kicker's keeper at a goal kick points at the ball.
+static const vs_pose kick_off_pose[VS_TEAMS][VS_TEAM_SIZE] = {
+    {{-0.675, 0, 0}, {-0.2, 0, 0}, {-0.4, 0, 0}},
+    {{0.675, 0, VS_PI}, {0.2, 0, VS_PI}, {0.4, 0, VS_PI}},
+};
+// The defending keeper touches its line and is pointed straight at the ball, as in the paper (section VIII).
+#define KEEPER_ON_LINE_M (VS_FIELD_HALF_LENGTH_M - VS_ROBOT_SIZE_M / 2)
+static const vs_pose penalty_pose[VS_TEAMS][VS_TEAM_SIZE] = {
+    {{-0.65, 0, 0}, {0.3, 0, 0}, {-0.1, 0.4, 0}},
+    {{KEEPER_ON_LINE_M, 0, VS_PI}, {-0.1, 0.25, VS_PI}, {-0.1, -0.4, VS_PI}},
+};
+static const vs_pose goal_kick_pose[VS_TEAMS][VS_TEAM_SIZE] = {
+    {{-0.675, 0.27, VS_PI / 4}, {-0.45, 0.32, 0}, {-0.3, -0.47, 0}},
+    {{0.675, 0, VS_PI}, {-0.225, 0.1, VS_PI}, {-0.15, -0.32, VS_PI}},
+};
+
+static void free_ball_poses(const restart *r, vs_pose pose[VS_TEAMS][VS_TEAM_SIZE]) {
+  double x_side = r->ball_x_m > 0 ? 1 : -1, y_side = r->ball_y_m > 0 ? 1 : -1;
+  for (int t = 0; t < VS_TEAMS; t++) {
+    double own = t == 0 ? -1 : 1, theta_rad = t == 0 ? 0 : VS_PI; // which side is its own
+    bool attacks = own != x_side;
+    pose[t][0] = (vs_pose){own * 0.675, 0, theta_rad};
+    pose[t][1] = (vs_pose){r->ball_x_m + own * VS_FREE_BALL_ROBOT_M, r->ball_y_m, theta_rad};
+    pose[t][2] = (vs_pose){attacks ? -own * 0.1 : own * 0.3, y_side * (attacks ? -0.2 : -0.1), theta_rad};
+  }
+}
+
+static void fixed_poses(const restart *r, vs_pose pose[VS_TEAMS][VS_TEAM_SIZE]) {
+  const vs_pose(*table)[VS_TEAM_SIZE] = r->kind == VS_EVENT_PENALTY     ? penalty_pose
+                                        : r->kind == VS_EVENT_GOAL_KICK ? goal_kick_pose
+                                                                        : kick_off_pose;
+  if (r->kind == VS_EVENT_FREE_BALL) {
+    free_ball_poses(r, pose);
+    return;
+  }
+  for (int t = 0; t < VS_TEAMS; t++)
+    for (int i = 0; i < VS_TEAM_SIZE; i++) pose[t][i] = table[t][i];
+  if (r->kind == VS_EVENT_GOAL_KICK && r->ball_y_m < 0) {
+    pose[0][0].y_m = -pose[0][0].y_m;
+    pose[0][0].theta_rad = -pose[0][0].theta_rad;
+  }
+}
+
+// Half a robot's diagonal plus a little: a robot of any heading fits into this circle.
+#define ROOT_2        1.4142135623730951
+#define ROBOT_CLEAR_M (VS_ROBOT_SIZE_M / 2 * ROOT_2 + 0.005)
+
+// Where robots that have no task at this restart may stand, wholly. t: 0 kicker, 1 receiver.
+static bool rules_allow(const restart *r, int t, double x_m, double y_m) {
+  double x_side = r->ball_x_m > 0 ? 1 : -1, y_side = r->ball_y_m > 0 ? 1 : -1;
+  double area_x_m = -(VS_FIELD_HALF_LENGTH_M - VS_AREA_DEPTH_M);
+  switch (r->kind) {
+  case VS_EVENT_PENALTY: // behind the half line, as seen from the ball
+    return x_m <= -ROBOT_CLEAR_M;
+  case VS_EVENT_FREE_BALL: // out of the ball's quadrant
+    return x_side * x_m <= -ROBOT_CLEAR_M || y_side * y_m <= -ROBOT_CLEAR_M;
+  case VS_EVENT_GOAL_KICK: // out of the kicker's area
+    return x_m >= area_x_m + ROBOT_CLEAR_M || fabs(y_m) >= VS_AREA_HALF_WIDTH_M + ROBOT_CLEAR_M;
+  default: // kick-off: own half, receivers outside the circle
+    if (t == 0) return x_m <= -ROBOT_CLEAR_M;
+    return x_m >= ROBOT_CLEAR_M && hypot(x_m, y_m) >= VS_CIRCLE_RADIUS_M + ROBOT_CLEAR_M;
+  }
+}
+
+// The robot that has a task: it kicks, keeps the goal or stands beside a free ball. False: team t has none.
+static bool draw_task(const restart *r, int t, vs_rng *rng, vs_pose *pose) {
+  if (r->kind == VS_EVENT_FREE_BALL) {
+    *pose = (vs_pose){r->ball_x_m + (t == 0 ? -1 : 1) * VS_FREE_BALL_ROBOT_M, r->ball_y_m, 0};
+  } else if (r->kind == VS_EVENT_PENALTY && t == 0) { // behind the ball, 10 to 30 cm away
+    double angle = vs_rng_range(rng, -VS_PI / 3, VS_PI / 3), distance = vs_rng_range(rng, 0.1, 0.3);
+    *pose = (vs_pose){r->ball_x_m - distance * cos(angle), distance * sin(angle), 0};
+  } else if (r->kind == VS_EVENT_PENALTY) { // touches its line, within the goal's mouth
+    double room_m = VS_GOAL_HALF_WIDTH_M - ROBOT_CLEAR_M;
+    *pose = (vs_pose){KEEPER_ON_LINE_M, vs_rng_range(rng, -room_m, room_m), 0};
+  } else if (r->kind == VS_EVENT_GOAL_KICK && t == 0) { // in its area
+    double x_m = vs_rng_range(rng, -VS_FIELD_HALF_LENGTH_M + ROBOT_CLEAR_M, -VS_FIELD_HALF_LENGTH_M + VS_AREA_DEPTH_M);
+    *pose = (vs_pose){x_m, vs_rng_range(rng, -VS_AREA_HALF_WIDTH_M, VS_AREA_HALF_WIDTH_M), 0};
+  } else {
+    return false;
+  }
+  return true;
+}
+
+static vs_pose draw_anywhere(const restart *r, int t, vs_rng *rng) {
+  const double x_free_m = VS_FIELD_HALF_LENGTH_M - ROBOT_CLEAR_M, y_free_m = VS_FIELD_HALF_WIDTH_M - ROBOT_CLEAR_M;
+  const double corner_m = VS_FIELD_HALF_LENGTH_M + VS_FIELD_HALF_WIDTH_M - VS_CORNER_M - ROOT_2 * ROBOT_CLEAR_M;
+  for (;;) { // at least a third of the field is allowed in every case
+    double x_m = vs_rng_range(rng, -x_free_m, x_free_m), y_m = vs_rng_range(rng, -y_free_m, y_free_m);
+    if (fabs(x_m) + fabs(y_m) <= corner_m && rules_allow(r, t, x_m, y_m)) return (vs_pose){x_m, y_m, 0};
+  }
+}
+
+static bool is_clear(const restart *r, const vs_pose *placed[], int n, const vs_pose *pose) {
+  if (vs_distance_m(pose->x_m, pose->y_m, r->ball_x_m, r->ball_y_m) < ROBOT_CLEAR_M + VS_BALL_RADIUS_M) return false;
+  for (int k = 0; k < n; k++)
+    if (vs_distance_m(pose->x_m, pose->y_m, placed[k]->x_m, placed[k]->y_m) < 2 * ROBOT_CLEAR_M) return false;
+  return true;
+}
+
+static void random_poses(const restart *r, vs_rng *rng, vs_pose pose[VS_TEAMS][VS_TEAM_SIZE]) {
+  const vs_pose *placed[VS_TEAMS * VS_TEAM_SIZE];
+  int n = 0, robot[VS_TEAMS][VS_TEAM_SIZE];
+  for (int t = 0; t < VS_TEAMS; t++) {
+    for (int i = 0; i < VS_TEAM_SIZE; i++) robot[t][i] = i;
+    vs_rng_shuffle(rng, robot[t], VS_TEAM_SIZE);
+  }
+  // Robots with a task first (i = 0), since their room is small.
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    for (int t = 0; t < VS_TEAMS; t++) {
+      vs_pose *p = &pose[t][robot[t][i]];
+      do {
+        if (i > 0 || !draw_task(r, t, rng, p)) *p = draw_anywhere(r, t, rng);
+      } while (!is_clear(r, placed, n, p));
+      p->theta_rad = vs_wrap_rad(vs_rng_range(rng, -VS_PI, VS_PI));
+      placed[n++] = p;
+    }
+  }
+}
+
+void vs_place(vs_placement_mode mode, const vs_event *event, const vs_world *before, vs_rng *rng, vs_world *out) {
+  restart r;
+  vs_world view = *before;
+  *out = *before;
+  if (!restart_of(event, &r)) return;
+
+  vs_pose pose[VS_TEAMS][VS_TEAM_SIZE];
+  if (mode == VS_PLACEMENT_RANDOM)
+    random_poses(&r, rng, pose);
+  else
+    fixed_poses(&r, pose);
+  for (int t = 0; t < VS_TEAMS; t++)
+    for (int i = 0; i < VS_TEAM_SIZE; i++) view.robot[t][i] = (vs_robot){.pose = pose[t][i], .valid = true};
+  view.ball = (vs_ball){.x_m = r.ball_x_m, .y_m = r.ball_y_m, .z_m = VS_BALL_RADIUS_M, .valid = true};
+  vs_world_for_team(&view, r.kicker, out);
+}

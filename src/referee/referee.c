@@ -1,0 +1,180 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "referee_internal.h"
+#include "vsss/field.h"
+#include "vsss/geom.h"
+
+vs_referee_def vs_referee_def_default(vs_rules rules) {
+  vs_referee_def def = {.rules = rules,
+                        .placement = VS_PLACEMENT_PAPER,
+                        .duration_s = 120,
+                        .goal_difference_stop = 10,
+                        .halves = 1,
+                        .kick_off = VS_BLUE};
+  if (rules == VS_RULES_LEAGUE) {
+    def.duration_s = 600;
+    def.halves = 2;
+  }
+  return def;
+}
+
+vs_referee_def vs_referee_def_training(void) {
+  vs_referee_def def = vs_referee_def_default(VS_RULES_PAPER);
+  def.placement = VS_PLACEMENT_RANDOM;
+  def.duration_s = 40;
+  def.end_at_first_goal = true;
+  return def;
+}
+
+static vs_status check_def(const vs_referee_def *def, vs_error *err) {
+  if (!(def->duration_s >= 1 && def->duration_s <= 7200))
+    return vs_fail(err, VS_USAGE, "duration %g s: a match lasts 1 to 7200 s", def->duration_s);
+  if (def->goal_difference_stop < 0)
+    return vs_fail(err, VS_USAGE, "goal difference %d: 0 (never ends the match) or more", def->goal_difference_stop);
+  if (def->halves != 1 && def->halves != 2) return vs_fail(err, VS_USAGE, "%d halves: 1 or 2", def->halves);
+  return VS_OK;
+}
+
+static void forget(vs_referee *r) {
+  r->still_s = 0;
+  r->play_area = -1;
+  r->defence_s = r->attack_s = 0;
+  r->defence_seen_s = r->attack_seen_s = -1;
+}
+
+vs_status vs_referee_init(vs_referee *referee, const vs_referee_def *def, vs_error *err) {
+  vs_status status = check_def(def, err);
+  if (status != VS_OK) return status;
+  memset(referee, 0, sizeof *referee);
+  referee->def = *def;
+  referee->kick_off = def->kick_off;
+  referee->game.duration_s = def->duration_s;
+  referee->game.last_event = (vs_event){.kind = VS_EVENT_KICK_OFF, .team = def->kick_off};
+  forget(referee);
+  return VS_OK;
+}
+
+void vs_referee_restarted(vs_referee *referee, const vs_world *world) {
+  forget(referee);
+  referee->still_x_m = world->ball.x_m;
+  referee->still_y_m = world->ball.y_m;
+}
+
+// In the area of the team that defends -x (side -1) or +x (side 1), the goal behind it included.
+static bool in_area(int side, double x_m, double y_m) {
+  return side * x_m > VS_FIELD_HALF_LENGTH_M - VS_AREA_DEPTH_M && fabs(y_m) < VS_AREA_HALF_WIDTH_M;
+}
+
+static int count_in_area(const vs_world *world, int team, int side) {
+  int n = 0;
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    const vs_pose *p = &world->robot[team][i].pose;
+    n += in_area(side, p->x_m, p->y_m) ? 1 : 0;
+  }
+  return n;
+}
+
+static bool near_ball(const vs_world *world, int team) {
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    const vs_pose *p = &world->robot[team][i].pose;
+    if (vs_distance_m(p->x_m, p->y_m, world->ball.x_m, world->ball.y_m) <= VS_LEAGUE_NEAR_BALL_M) return true;
+  }
+  return false;
+}
+
+static void facts_of(const vs_world *world, double dt_s, vs_facts *f) {
+  const vs_ball *ball = &world->ball;
+  const double line_m = VS_FIELD_HALF_LENGTH_M + VS_BALL_RADIUS_M;
+  bool over_line = fabs(ball->x_m) > line_m, in_mouth = fabs(ball->y_m) < VS_GOAL_HALF_WIDTH_M;
+  *f = (vs_facts){.dt_s = dt_s, .scorer = -1, .area = -1, .ended_play = -1};
+  if (over_line && in_mouth) f->scorer = ball->x_m > 0 ? VS_BLUE : VS_YELLOW;
+  f->ball_out = (over_line && !in_mouth) || fabs(ball->y_m) > VS_FIELD_HALF_WIDTH_M + VS_BALL_RADIUS_M;
+  f->quadrant = ball->x_m >= 0 ? (ball->y_m >= 0 ? 1 : 4) : (ball->y_m >= 0 ? 2 : 3);
+  f->ball_mps = sqrt(ball->vx_mps * ball->vx_mps + ball->vy_mps * ball->vy_mps);
+  for (int t = 0; t < VS_TEAMS; t++) {
+    int side = t == VS_BLUE ? -1 : 1;
+    f->near_ball[t] = near_ball(world, t);
+    if (f->scorer >= 0 || !in_area(side, ball->x_m, ball->y_m)) continue;
+    f->area = t;
+    f->defenders = count_in_area(world, t, side);
+    f->attackers = count_in_area(world, vs_other_team(t), side);
+  }
+}
+
+bool vs_rule_time(const vs_referee *r, const vs_facts *f, vs_event *event) {
+  double end_s = r->def.duration_s * (r->half + 1) / r->def.halves;
+  if (!vs_reached(r->game.time_s, end_s, f->dt_s)) return false;
+  bool last = r->half + 1 == r->def.halves;
+  event->kind = last ? VS_EVENT_END : VS_EVENT_HALF_TIME;
+  if (!last) event->team = vs_other_team(r->def.kick_off);
+  return true;
+}
+
+bool vs_rule_ball_out(const vs_referee *r, const vs_facts *f, vs_event *event) {
+  (void)r;
+  if (!f->ball_out) return false;
+  event->kind = VS_EVENT_FREE_BALL;
+  event->quadrant = f->quadrant;
+  return true;
+}
+
+static bool ends_the_match(const vs_referee *r, double dt_s) {
+  int difference = abs(r->game.score[VS_BLUE] - r->game.score[VS_YELLOW]);
+  if (r->def.end_at_first_goal) return true;
+  if (r->def.goal_difference_stop > 0 && difference >= r->def.goal_difference_stop) return true;
+  return vs_reached(r->game.time_s, r->def.duration_s, dt_s);
+}
+
+static void announce(vs_referee *r, const vs_event *event, double dt_s) {
+  r->game.last_event = *event;
+  if (event->kind == VS_EVENT_GOAL) {
+    r->game.score[event->team]++;
+    r->kick_off = vs_other_team(event->team);
+    r->over = ends_the_match(r, dt_s);
+  } else if (event->kind == VS_EVENT_HALF_TIME) {
+    r->half++;
+    r->kick_off = event->team;
+  } else if (event->kind == VS_EVENT_END) {
+    r->over = true;
+  }
+  forget(r);
+}
+
+vs_event vs_referee_step(vs_referee *referee, const vs_world *world, double dt_s) {
+  vs_event event = {.kind = VS_EVENT_NONE};
+  if (referee->over) return event;
+  referee->game.time_s += dt_s;
+  event.time_s = referee->game.time_s;
+
+  vs_facts facts;
+  facts_of(world, dt_s, &facts);
+  bool league = referee->def.rules == VS_RULES_LEAGUE;
+  if (league)
+    vs_league_clocks(referee, &facts);
+  else
+    vs_paper_clocks(referee, world, &facts);
+  for (const vs_rule *rule = league ? vs_league_rules : vs_paper_rules; rule->name; rule++) {
+    if (!rule->applies(referee, &facts, &event)) continue;
+    announce(referee, &event, dt_s);
+    break;
+  }
+  return event;
+}
+
+vs_status vs_rules_parse(const char *name, vs_rules *out, vs_error *err) {
+  bool league = strcmp(name, "league") == 0;
+  if (!league && strcmp(name, "paper") != 0)
+    return vs_fail(err, VS_USAGE, "rules '%.80s': known are paper and league", name);
+  *out = league ? VS_RULES_LEAGUE : VS_RULES_PAPER;
+  return VS_OK;
+}
+
+vs_status vs_placement_parse(const char *name, vs_placement_mode *out, vs_error *err) {
+  bool random = strcmp(name, "random") == 0;
+  if (!random && strcmp(name, "paper") != 0)
+    return vs_fail(err, VS_USAGE, "placement '%.80s': known are paper and random", name);
+  *out = random ? VS_PLACEMENT_RANDOM : VS_PLACEMENT_PAPER;
+  return VS_OK;
+}

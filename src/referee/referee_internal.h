@@ -1,0 +1,42 @@
+// What the referee's files share: the facts of one frame and the rows of a set of rules.
+#ifndef VSSS_REFEREE_INTERNAL_H
+#define VSSS_REFEREE_INTERNAL_H
+
+#include "vsss/referee.h"
+
+// What one frame shows, worked out once for all rules.
+typedef struct vs_facts {
+  double dt_s;
+  int scorer;               // the whole ball is over the other team's goal line; -1: no goal
+  bool ball_out;            // it has left the field some other way (over a wall): an accident
+  int quadrant;             // of the ball
+  int area;                 // the team in whose area the ball is; -1: none
+  int defenders, attackers; // of and against that team, in that area
+  double ball_mps;
+  bool near_ball[VS_TEAMS];
+  int ended_play; // league: the team whose area the ball has just left (into the goal or out of it); -1: none
+} vs_facts;
+
+// One rule. Fills kind, team and quadrant of event where it applies. The first row that applies decides; the table ends
+// with a row without a name.
+typedef struct vs_rule {
+  const char *name;
+  bool (*applies)(const vs_referee *referee, const vs_facts *facts, vs_event *event);
+} vs_rule;
+
+extern const vs_rule vs_paper_rules[], vs_league_rules[];
+
+// The clocks of one set of rules, kept before its rules are asked.
+void vs_paper_clocks(vs_referee *referee, const vs_world *world, const vs_facts *facts);
+void vs_league_clocks(vs_referee *referee, vs_facts *facts);
+
+// Rows both tables have.
+bool vs_rule_time(const vs_referee *referee, const vs_facts *facts, vs_event *event);
+bool vs_rule_ball_out(const vs_referee *referee, const vs_facts *facts, vs_event *event);
+
+static inline vs_team vs_other_team(int team) { return team == VS_BLUE ? VS_YELLOW : VS_BLUE; }
+
+// A clock that counts frames has reached limit_s: half a frame of tolerance against rounding.
+static inline bool vs_reached(double clock_s, double limit_s, double dt_s) { return clock_s + 0.5 * dt_s >= limit_s; }
+
+#endif

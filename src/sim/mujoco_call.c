@@ -1,0 +1,42 @@
+#include "mujoco_call.h"
+
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <mujoco/mujoco.h>
+
+// MuJoCo's handlers are process-wide function pointers without a context, so where to return to is kept per thread.
+typedef struct rescue {
+  jmp_buf jump;
+  char text[300];
+} rescue;
+static _Thread_local rescue *active;
+
+static void on_error(const char *text) {
+  if (!active) abort(); // a MuJoCo call outside vs_mujoco_call: returning would go on with broken data
+  snprintf(active->text, sizeof active->text, "%s", text);
+  longjmp(active->jump, 1);
+}
+
+static void on_warning(const char *text) { (void)text; }
+
+static void install_handlers(void) {
+  mju_user_error = on_error;
+  mju_user_warning = on_warning;
+}
+
+vs_status vs_mujoco_call(void (*work)(void *context), void *context, vs_error *err) {
+  static pthread_once_t once = PTHREAD_ONCE_INIT;
+  pthread_once(&once, install_handlers);
+  rescue here;
+  if (setjmp(here.jump)) {
+    active = NULL;
+    return vs_fail(err, VS_FAIL, "MuJoCo: %s", here.text);
+  }
+  active = &here;
+  work(context);
+  active = NULL;
+  return VS_OK;
+}

@@ -1,0 +1,177 @@
+// One match: place the pieces, step frame by frame, read the true world.
+#include "sim_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mujoco_call.h"
+#include "vsss/field.h"
+#include "vsss/geom.h"
+
+vs_sim_params vs_sim_params_default(void) {
+  vs_sim_params params = {.wheel_limit_scale = 1,
+                          .floor_friction_scale = 1,
+                          .robot_mass_scale = 1,
+                          .ball_mass_scale = 1,
+                          .ball_rolling_scale = 1};
+  for (int i = 0; i < ROBOTS; i++) {
+    for (int side = LEFT; side < SIDES; side++) params.wheel_gain[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE][side] = 1;
+  }
+  return params;
+}
+
+static void make_data(void *context) {
+  vs_sim *sim = context;
+  sim->data = mj_makeData(sim->mj);
+}
+
+vs_status vs_sim_new(const vs_model *model, vs_sim **out, vs_error *err) {
+  vs_sim *sim = calloc(1, sizeof *sim);
+  if (!sim) return vs_fail(err, VS_FAIL, "out of memory");
+  sim->model = model;
+  sim->mj = model->mj;
+  vs_status status = vs_mujoco_call(make_data, sim, err);
+  if (status == VS_OK && !sim->data) status = vs_fail(err, VS_FAIL, "out of memory");
+  if (status != VS_OK) {
+    vs_sim_free(sim);
+    return status;
+  }
+  vs_sim_reset(sim, NULL);
+  *out = sim;
+  return VS_OK;
+}
+
+void vs_sim_free(vs_sim *sim) {
+  if (!sim) return;
+  if (sim->data) mj_deleteData(sim->data);
+  if (sim->own) mj_deleteModel(sim->own);
+  free(sim);
+}
+
+// mj_step computes everything else in mjData from qpos, qvel, ctrl, the applied forces and qacc_warmstart.
+static void stop_everything(vs_sim *sim) {
+  mjData *d = sim->data;
+  memset(d->qvel, 0, sizeof(double) * sim->mj->nv);
+  memset(d->qacc_warmstart, 0, sizeof(double) * sim->mj->nv);
+  memset(d->qfrc_applied, 0, sizeof(double) * sim->mj->nv);
+  memset(d->qfrc_constraint, 0, sizeof(double) * sim->mj->nv);
+  memset(d->ctrl, 0, sizeof(double) * sim->mj->nu);
+  memset(d->warning, 0, sizeof d->warning);
+  memset(sim->wheel, 0, sizeof sim->wheel);
+}
+
+void vs_sim_reset(vs_sim *sim, const vs_sim_params *params) {
+  sim->params = params ? *params : vs_sim_params_default();
+  double tau = sim->params.motor_tau_s;
+  sim->lag = tau > 0 ? 1 - exp(-sim->mj->opt.timestep / tau) : 1;
+  vs_randomize_apply(sim);
+  memcpy(sim->data->qpos, sim->mj->qpos0, sizeof(double) * sim->mj->nq);
+  sim->data->time = 0;
+  sim->frame = 0;
+  stop_everything(sim);
+}
+
+static void set_upright(double *qpos, vs_pose pose) {
+  const double free_joint[7] = {pose.x_m, pose.y_m, 0, cos(pose.theta_rad / 2), 0, 0, sin(pose.theta_rad / 2)};
+  memcpy(qpos, free_joint, sizeof free_joint);
+}
+
+void vs_sim_place(vs_sim *sim, const vs_world *world) {
+  stop_everything(sim);
+  for (int i = 0; i < ROBOTS; i++) {
+    vs_pose pose = world->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE].pose;
+    double *qpos = sim->data->qpos + sim->model->robot[i].qpos;
+    if (sim->model->drive == VS_DRIVE_CONTACT) {
+      set_upright(qpos, pose);
+    } else {
+      qpos[0] = pose.x_m;
+      qpos[1] = pose.y_m;
+      qpos[2] = pose.theta_rad;
+    }
+  }
+  const double ball[7] = {world->ball.x_m, world->ball.y_m, VS_BALL_RADIUS_M, 1, 0, 0, 0};
+  memcpy(sim->data->qpos + sim->model->ball_qpos, ball, sizeof ball);
+}
+
+static vs_status check_warnings(const vs_sim *sim, vs_error *err) {
+  for (int i = 0; i < mjNWARNING; i++) {
+    const mjWarningStat *warning = &sim->data->warning[i];
+    if (!warning->number) continue;
+    return vs_fail(err, VS_FAIL, "the simulator broke down at %.2f s: %s", sim->frame / 30.0,
+                   mju_warningText(i, warning->lastinfo));
+  }
+  return VS_OK;
+}
+
+typedef struct frame_work {
+  vs_sim *sim;
+  double target[ROBOTS][SIDES];
+} frame_work;
+
+static void step_frame(void *context) {
+  frame_work *work = context;
+  vs_sim *sim = work->sim;
+  for (int i = 0; i < sim->model->substeps; i++) {
+    vs_drive_step(sim, work->target);
+    mj_step(sim->mj, sim->data);
+  }
+}
+
+vs_status vs_sim_frame(vs_sim *sim, const vs_wheels command[VS_TEAMS][VS_TEAM_SIZE], vs_error *err) {
+  frame_work work = {.sim = sim};
+  for (int i = 0; i < ROBOTS; i++) {
+    vs_wheels wheels = command[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+    if (!isfinite(wheels.left_radps) || !isfinite(wheels.right_radps)) {
+      return vs_fail(err, VS_FAIL, "wheel command of %s robot %d is not a number (%g, %g rad/s): mend its player",
+                     vs_team_name((vs_team)(i / VS_TEAM_SIZE)), i % VS_TEAM_SIZE, wheels.left_radps,
+                     wheels.right_radps);
+    }
+    work.target[i][LEFT] = vs_drive_target(&sim->params, i, LEFT, wheels.left_radps);
+    work.target[i][RIGHT] = vs_drive_target(&sim->params, i, RIGHT, wheels.right_radps);
+  }
+  vs_status status = vs_mujoco_call(step_frame, &work, err);
+  if (status != VS_OK) return status;
+  sim->frame++;
+  return check_warnings(sim, err);
+}
+
+static void read_contact_robot(const vs_sim *sim, const robot_address *address, vs_robot *robot) {
+  const double *q = sim->data->qpos + address->qpos, *v = sim->data->qvel + address->qvel;
+  double w = q[3], x = q[4], y = q[5], z = q[6];
+  robot->pose = (vs_pose){q[0], q[1], atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))};
+  robot->vx_mps = v[0];
+  robot->vy_mps = v[1];
+  robot->omega_radps = v[5]; // about the robot's own vertical
+  robot->left_radps = sim->data->qvel[address->wheel_qvel[LEFT]];
+  robot->right_radps = sim->data->qvel[address->wheel_qvel[RIGHT]];
+}
+
+static void read_planar_robot(const vs_sim *sim, const robot_address *address, const wheel_state *wheel,
+                              vs_robot *robot) {
+  const double *q = sim->data->qpos + address->qpos, *v = sim->data->qvel + address->qvel;
+  robot->pose = (vs_pose){q[0], q[1], vs_wrap_rad(q[2])};
+  robot->vx_mps = v[0];
+  robot->vy_mps = v[1];
+  robot->omega_radps = v[2];
+  robot->left_radps = wheel[LEFT].speed_radps;
+  robot->right_radps = wheel[RIGHT].speed_radps;
+}
+
+void vs_sim_world(const vs_sim *sim, vs_world *out) {
+  out->time_us = (int64_t)sim->frame * 1000000 / 30;
+  out->seq = sim->frame;
+  for (int i = 0; i < ROBOTS; i++) {
+    vs_robot *robot = &out->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+    if (sim->model->drive == VS_DRIVE_CONTACT) {
+      read_contact_robot(sim, &sim->model->robot[i], robot);
+    } else {
+      read_planar_robot(sim, &sim->model->robot[i], sim->wheel[i], robot);
+    }
+    robot->valid = true;
+  }
+  const double *q = sim->data->qpos + sim->model->ball_qpos, *v = sim->data->qvel + sim->model->ball_qvel;
+  out->ball = (vs_ball){q[0], q[1], q[2], v[0], v[1], v[2], true};
+}
+
+void *vs_sim_mjdata(vs_sim *sim) { return sim->data; }

@@ -1,0 +1,52 @@
+// What the files of this module share: the constant model with the addresses of its parts, and one match's state.
+#ifndef VSSS_SIM_INTERNAL_H
+#define VSSS_SIM_INTERNAL_H
+
+#include <mujoco/mujoco.h>
+
+#include "vsss/sim.h"
+
+#define ROBOTS (VS_TEAMS * VS_TEAM_SIZE) // numbered team * VS_TEAM_SIZE + index
+enum { LEFT, RIGHT, SIDES };
+
+// Addresses into qpos, qvel and ctrl, looked up by name once.
+typedef struct robot_address {
+  int body;
+  int qpos, qvel;        // contact: free joint (7, 6). planar: x, y, yaw joints (3, 3)
+  int wheel_qvel[SIDES]; // contact only
+  int servo[SIDES];      // contact only
+} robot_address;
+
+struct vs_model {
+  mjModel *mj;
+  vs_drive drive;
+  int substeps;
+  robot_address robot[ROBOTS];
+  int ball_body, ball_qpos, ball_qvel;
+};
+
+// The planar drive's wheels and what both drives remember of the commands. Plain data.
+typedef struct wheel_state {
+  double target_radps; // command after limit, gain, dead zone and lag
+  double speed_radps;  // planar only; the contact drive's wheels are joints
+} wheel_state;
+
+struct vs_sim {
+  const vs_model *model;
+  const mjModel *mj; // model->mj, or own where this episode's masses or frictions are not the nominal ones
+  mjModel *own;      // NULL until first needed
+  mjData *data;
+  vs_sim_params params;
+  double lag; // share of the way to the commanded speed that target_radps goes in one step; 1: no lag
+  uint32_t frame;
+  wheel_state wheel[ROBOTS][SIDES];
+};
+
+// drive.c: once a step, before mj_step. target: see vs_drive_target.
+double vs_drive_target(const vs_sim_params *params, int robot, int side, double command_radps);
+void vs_drive_step(vs_sim *sim, const double target[ROBOTS][SIDES]);
+
+// randomize.c: makes sim->mj fit sim->params.
+void vs_randomize_apply(vs_sim *sim);
+
+#endif

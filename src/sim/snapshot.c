@@ -1,0 +1,43 @@
+// Save and restore: exactly what mj_step reads, and the drive's own state, so that play continues bit-identically.
+#include "sim_internal.h"
+
+#include <stddef.h>
+#include <string.h>
+
+typedef struct snapshot {
+  vs_sim_params params;
+  uint32_t frame;
+  wheel_state wheel[ROBOTS][SIDES];
+  double time;
+} snapshot; // followed by qpos, qvel, qacc_warmstart, qfrc_constraint
+
+size_t vs_sim_state_size(const vs_sim *sim) {
+  return sizeof(snapshot) + sizeof(double) * (size_t)(sim->mj->nq + 3 * sim->mj->nv);
+}
+
+void vs_sim_save(const vs_sim *sim, void *state) {
+  snapshot head = {.params = sim->params, .frame = sim->frame, .time = sim->data->time};
+  memcpy(head.wheel, sim->wheel, sizeof head.wheel);
+  memcpy(state, &head, sizeof head);
+  char *at = (char *)state + sizeof head;
+  size_t nq = sizeof(double) * (size_t)sim->mj->nq, nv = sizeof(double) * (size_t)sim->mj->nv;
+  memcpy(at, sim->data->qpos, nq);
+  memcpy(at + nq, sim->data->qvel, nv);
+  memcpy(at + nq + nv, sim->data->qacc_warmstart, nv);
+  memcpy(at + nq + 2 * nv, sim->data->qfrc_constraint, nv);
+}
+
+void vs_sim_restore(vs_sim *sim, const void *state) {
+  snapshot head;
+  memcpy(&head, state, sizeof head);
+  vs_sim_reset(sim, &head.params);
+  sim->frame = head.frame;
+  sim->data->time = head.time;
+  memcpy(sim->wheel, head.wheel, sizeof head.wheel);
+  const char *at = (const char *)state + sizeof head;
+  size_t nq = sizeof(double) * (size_t)sim->mj->nq, nv = sizeof(double) * (size_t)sim->mj->nv;
+  memcpy(sim->data->qpos, at, nq);
+  memcpy(sim->data->qvel, at + nq, nv);
+  memcpy(sim->data->qacc_warmstart, at + nq + nv, nv);
+  memcpy(sim->data->qfrc_constraint, at + nq + 2 * nv, nv);
+}

@@ -1,0 +1,153 @@
+// One frame -> tags, balls and adversaries in pixels.
+#include "vsss/detect.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "vision/blobs.h"
+#include "vsss/field.h"
+#include "vsss/tag.h"
+
+enum { BALL = 1, ADVERSARY = 2 };
+
+vs_tag_def vs_tag_def_field(void) {
+  return (vs_tag_def){.family = VS_TAG_FAMILY,
+                      .decimate = 1.0,
+                      .sharpening = 0.25,
+                      .min_white_black_diff = 40,
+                      .bits_corrected = 1,
+                      .max_hamming = 1,
+                      .min_margin = 40.0};
+}
+
+vs_tag_def vs_tag_def_photo(void) {
+  vs_tag_def def = vs_tag_def_field();
+  def.min_white_black_diff = 5;
+  def.min_margin = 0.0;
+  return def;
+}
+
+vs_detector_def vs_detector_def_default(void) {
+  return (vs_detector_def){.tag = vs_tag_def_field(),
+                           .adversary = VS_YELLOW,
+                           .ball = {5, 40, 0.5, 0.3},
+                           .team = {[VS_BLUE] = {195, 260, 0.45, 0.2}, [VS_YELLOW] = {46, 75, 0.45, 0.35}},
+                           .tag_paper_m = VS_TAG_PAPER_M,
+                           .patch_m = VS_PATCH_M};
+}
+
+struct vs_detector {
+  vs_detector_def def;
+  vs_tag_detector *tags;
+  vs_blob_finder *blobs;
+  double tag_side_px; // of the border; 0: any
+  double paper_ratio; // paper over border
+  vs_blob_gate ball, adversary;
+  int step; // of the colour grid
+  uint8_t table[VS_COLOUR_TABLE];
+};
+
+// Without a scale: from 12 pixels to a fiftieth of the frame, whatever size that turns out to be.
+static vs_blob_gate gate_of(uint8_t bit, double area_px, int most) {
+  if (area_px > 0) return (vs_blob_gate){bit, area_px, 0.3 * area_px, 1.6 * area_px, most, 2.2};
+  return (vs_blob_gate){bit, 0.0, 12.0, 1e4, 1, 2.2};
+}
+
+static void set_sizes(vs_detector *d, const vs_tag_pattern *pattern) {
+  double scale = d->def.px_per_m;
+  d->paper_ratio = (double)pattern->cells / pattern->border_cells;
+  d->tag_side_px = scale * d->def.tag_paper_m / d->paper_ratio;
+  double radius_px = scale * VS_BALL_RADIUS_M, patch_px = scale * d->def.patch_m;
+  d->ball = gate_of(BALL, M_PI * radius_px * radius_px, 1);
+  d->ball.max_px *= 1.4; // a fast ball is smeared over more
+  d->adversary = gate_of(ADVERSARY, patch_px * patch_px, VS_TEAM_SIZE);
+  double smallest_px = scale > 0 ? fmin(2 * radius_px, patch_px) : 8.0;
+  d->step = (int)fmin(fmax(smallest_px / 4.0, 1.0), 4.0);
+}
+
+vs_status vs_detector_new(const vs_detector_def *def, vs_detector **out, vs_error *err) {
+  *out = NULL;
+  if (!(def->px_per_m >= 0 && def->px_per_m < 1e5) || !(def->patch_m > 0) || !(def->tag_paper_m > 0))
+    return vs_fail(err, VS_USAGE, "detector: px_per_m %g, patch_m %g, tag_paper_m %g must be positive", def->px_per_m,
+                   def->patch_m, def->tag_paper_m);
+  vs_tag_pattern pattern;
+  vs_status s = vs_tag_pattern_of(def->tag.family, 0, &pattern, err);
+  if (s != VS_OK) return s;
+  vs_detector *d = calloc(1, sizeof *d);
+  if (!d || !(d->blobs = vs_blob_finder_new())) {
+    free(d);
+    return vs_fail(err, VS_FAIL, "out of memory");
+  }
+  d->def = *def;
+  s = vs_tag_detector_new(&def->tag, &d->tags, err);
+  if (s != VS_OK) {
+    vs_detector_free(d);
+    return s;
+  }
+  vs_colour_table_add(d->table, &def->ball, BALL);
+  vs_colour_table_add(d->table, &def->team[def->adversary], ADVERSARY);
+  set_sizes(d, &pattern);
+  *out = d;
+  return VS_OK;
+}
+
+void vs_detector_free(vs_detector *detector) {
+  if (!detector) return;
+  vs_tag_detector_free(detector->tags);
+  vs_blob_finder_free(detector->blobs);
+  free(detector);
+}
+
+static double side_px(const vs_tag *tag) {
+  double sum = 0;
+  for (int i = 0; i < 4; i++) {
+    const double *a = tag->corner_px[i], *b = tag->corner_px[(i + 1) % 4];
+    sum += hypot(a[0] - b[0], a[1] - b[1]);
+  }
+  return sum / 4;
+}
+
+// Tags of another size than ours are reflections, prints on the wall or phantoms.
+static int keep_sizes(const vs_detector *d, vs_tag *tag, int count) {
+  int kept = 0;
+  for (int i = 0; i < count; i++) {
+    double side = side_px(&tag[i]);
+    if (d->tag_side_px > 0 && fabs(side - d->tag_side_px) > 0.25 * d->tag_side_px) continue;
+    tag[kept++] = tag[i];
+  }
+  return kept;
+}
+
+static bool on_tag(const vs_detector *d, const vs_detections *seen, const vs_blob *blob) {
+  for (int i = 0; i < seen->tags; i++) {
+    const vs_tag *t = &seen->tag[i];
+    double reach = 0.5 * side_px(t) * d->paper_ratio;
+    if (hypot(blob->x_px - t->centre_px[0], blob->y_px - t->centre_px[1]) < reach) return true;
+  }
+  return false;
+}
+
+// A colour seen on an own cap is paper or glare, no ball and no adversary.
+static int keep_off_tags(const vs_detector *d, const vs_detections *seen, vs_blob *blob, int count) {
+  int kept = 0;
+  for (int i = 0; i < count; i++)
+    if (!on_tag(d, seen, &blob[i])) blob[kept++] = blob[i];
+  return kept;
+}
+
+vs_status vs_detect(vs_detector *d, const vs_frame *frame, vs_detections *out, vs_error *err) {
+  out->capture_us = frame->capture_us;
+  out->seq = frame->seq;
+  out->tags = out->balls = out->adversaries = 0;
+  vs_status s = vs_tag_detect(d->tags, frame, out->tag, VS_MAX_TAGS, &out->tags, err);
+  if (s != VS_OK) return s;
+  out->tags = keep_sizes(d, out->tag, out->tags);
+  s = vs_blobs_find(d->blobs, frame, d->table, &d->ball, d->step, out->ball, VS_MAX_BLOBS, &out->balls, err);
+  if (s != VS_OK) return s;
+  s = vs_blobs_find(d->blobs, frame, d->table, &d->adversary, d->step, out->adversary, VS_MAX_BLOBS, &out->adversaries,
+                    err);
+  if (s != VS_OK) return s;
+  out->balls = keep_off_tags(d, out, out->ball, out->balls);
+  out->adversaries = keep_off_tags(d, out, out->adversary, out->adversaries);
+  return VS_OK;
+}

@@ -1,0 +1,74 @@
+// The [vision] section of the field's configuration.
+#include <string.h>
+
+#include "vsss/track.h"
+
+typedef struct rows {
+  vs_config_key *out;
+  int count, capacity;
+} rows;
+
+static void row(rows *r, vs_config_key key) {
+  if (r->count < r->capacity) r->out[r->count++] = key;
+}
+
+static void number(rows *r, const char *name, double *target, double min, double max, const char *help) {
+  row(r, (vs_config_key){name, VS_CONFIG_REAL, target, 0, min, max, help});
+}
+
+static void whole(rows *r, const char *name, int *target, double min, double max, const char *help) {
+  row(r, (vs_config_key){name, VS_CONFIG_INT, target, 0, min, max, help});
+}
+
+static void colour(rows *r, const char *const names[4], vs_colour *c) {
+  number(r, names[0], &c->hue_min_deg, 0, 360, "red 0, yellow 60, blue 240; min > max wraps");
+  number(r, names[1], &c->hue_max_deg, 0, 360, "red 0, yellow 60, blue 240");
+  number(r, names[2], &c->saturation_min, 0, 1, "0 grey, 1 pure");
+  number(r, names[3], &c->value_min, 0, 1, "0 black, 1 bright");
+}
+
+int vs_vision_schema(vs_detector_def *d, vs_track_def *t, vs_camera_def *c, char family[32], vs_config_key *out,
+                     int capacity) {
+  static const char *const ball[] = {"vision.ball_hue_min_deg", "vision.ball_hue_max_deg", "vision.ball_saturation_min",
+                                     "vision.ball_value_min"};
+  static const char *const blue[] = {"vision.blue_hue_min_deg", "vision.blue_hue_max_deg", "vision.blue_saturation_min",
+                                     "vision.blue_value_min"};
+  static const char *const yellow[] = {"vision.yellow_hue_min_deg", "vision.yellow_hue_max_deg",
+                                       "vision.yellow_saturation_min", "vision.yellow_value_min"};
+  static const char *const tag[] = {"vision.robot0_tag", "vision.robot1_tag", "vision.robot2_tag"};
+  static const char *const yaw[] = {"vision.robot0_yaw_rad", "vision.robot1_yaw_rad", "vision.robot2_yaw_rad"};
+  rows r = {out, 0, capacity};
+  whole(&r, "vision.width_px", &c->width, 0, 8192, "asked of the camera; 0: 1280x720 or 640x480");
+  whole(&r, "vision.height_px", &c->height, 0, 8192, "asked of the camera");
+  number(&r, "vision.fps", &c->fps, 0, 1000, "asked of the camera; 0: 60");
+  number(&r, "vision.exposure_ms", &c->exposure_ms, 0, 1000, "above 5 ms tags blur; 0: left alone");
+  strncpy(family, d->tag.family, 31);
+  family[31] = '\0';
+  d->tag.family = family;
+  row(&r, (vs_config_key){"vision.tag_family", VS_CONFIG_TEXT, family, 32, 0, 0, "of libapriltag"});
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    whole(&r, tag[i], &t->tag_id[i], -1, 100000, "tag id of the robot; -1: not playing");
+    number(&r, yaw[i], &t->tag_yaw_rad[i], -7, 7, "from the robot's front to the pattern's top, counter-clockwise");
+  }
+  number(&r, "vision.tag_decimate", &d->tag.decimate, 1, 8, "tags are searched in a picture smaller by this");
+  whole(&r, "vision.tag_contrast", &d->tag.min_white_black_diff, 1, 255, "smallest black to white, grey levels");
+  whole(&r, "vision.tag_max_hamming", &d->tag.max_hamming, 0, 2, "corrected bits accepted");
+  number(&r, "vision.tag_min_margin", &d->tag.min_margin, 0, 255, "decision margin accepted");
+  number(&r, "vision.tag_paper_m", &d->tag_paper_m, 0.01, 0.2, "side of the printed pattern");
+  number(&r, "vision.tag_height_m", &t->tag_height_m, 0, 0.3, "of the tags over the floor");
+  number(&r, "vision.patch_m", &d->patch_m, 0.01, 0.2, "side of the adversaries' team colour");
+  number(&r, "vision.patch_height_m", &t->patch_height_m, 0, 0.3, "of it over the floor");
+  number(&r, "vision.ball_height_m", &t->ball_height_m, 0, 0.1, "of the point its blob's middle shows");
+  number(&r, "vision.margin_m", &t->margin_m, 0, 1, "further outside the field nothing is believed");
+  colour(&r, ball, &d->ball);
+  colour(&r, blue, &d->team[VS_BLUE]);
+  colour(&r, yellow, &d->team[VS_YELLOW]);
+  number(&r, "vision.robot_acceleration_mps2", &t->robot_acceleration_mps2, 0.1, 100, "tracker: model deviation");
+  number(&r, "vision.ball_acceleration_mps2", &t->ball_acceleration_mps2, 0.1, 500, "tracker: model deviation");
+  number(&r, "vision.turn_acceleration_radps2", &t->turn_acceleration_radps2, 1, 5000, "tracker: model deviation");
+  number(&r, "vision.position_noise_m", &t->position_noise_m, 1e-5, 0.1, "tracker: of a tag");
+  number(&r, "vision.ball_noise_m", &t->ball_noise_m, 1e-5, 0.1, "tracker: of a ball");
+  number(&r, "vision.patch_noise_m", &t->patch_noise_m, 1e-5, 0.1, "tracker: of an adversary");
+  number(&r, "vision.heading_noise_rad", &t->heading_noise_rad, 1e-4, 1, "tracker: of a tag");
+  return r.count;
+}

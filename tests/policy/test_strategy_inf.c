@@ -1,0 +1,98 @@
+// src/policy/strategy_inf.c
+#include "policy/strategy_inf.h"
+#include "vectors.h"
+#include "vsss/policy.h"
+
+// Columns of inf.csv.gz.
+enum { SEQ, TICK, TIME, BALL, ROBOT = 5, ROBOT_STEP = 3, OUT = 14, ROLES = 20, TACTIC = 21 };
+
+static vs_point pixels(double x_m, double y_m) {
+  return (vs_point){(x_m + 0.80838742) * 640 / 1.61677484, (y_m + 0.58339083) * 480 / 1.16678166};
+}
+
+static inf_input input_of(const vectors *v) {
+  inf_input in = {.ball = pixels(vectors_number(v, BALL), vectors_number(v, BALL + 1)), .dt_s = 0.033333};
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    int c = ROBOT + i * ROBOT_STEP;
+    in.at[i] = pixels(vectors_number(v, c), vectors_number(v, c + 1));
+    in.o_rad[i] = -vectors_number(v, c + 2);
+  }
+  return in;
+}
+
+static void assert_tick(const vectors *v, const inf_state *s, double out[VS_TEAM_SIZE][2], double *worst) {
+  static const char *const tactic[] = {"catch", "catchsideways", "block", "blockopening", "push",
+                                       "spin",  "wait",          "kick",  "unlock"};
+  const char *letter = "AMG";
+  for (int r = 0; r < INF_ROLES; r++)
+    if (v->column[ROLES][s->role[r]] != letter[r])
+      fail_msg("sequence %s tick %s: roles %s, robot %d is %c here", v->column[SEQ], v->column[TICK], v->column[ROLES],
+               s->role[r], letter[r]);
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    if (strcmp(v->column[TACTIC + i], tactic[s->robot[i].tactic]) != 0)
+      fail_msg("sequence %s tick %s robot %d: %s, here %s", v->column[SEQ], v->column[TICK], i, v->column[TACTIC + i],
+               tactic[s->robot[i].tactic]);
+    for (int w = 0; w < 2; w++) {
+      double off = fabs(out[i][w] - vectors_number(v, OUT + i * 2 + w));
+      if (!(off <= 1e-4))
+        fail_msg("sequence %s tick %s robot %d (%s) wheel %d: off by %g", v->column[SEQ], v->column[TICK], i,
+                 v->column[TACTIC + i], w, off);
+      *worst = fmax(*worst, off);
+    }
+  }
+}
+
+static void every_recorded_tick_of_the_original_is_repeated(void **state) {
+  (void)state;
+  vectors v;
+  if (!vectors_open(&v, "inf", VECTORS_COMMANDS)) return;
+  inf_state s;
+  int commands = 0;
+  double worst = 0;
+  for (; vectors_next(&v); commands += VS_TEAM_SIZE) {
+    if (vectors_number(&v, TICK) == 0) inf_init(&s);
+    inf_input in = input_of(&v);
+    double out[VS_TEAM_SIZE][2];
+    inf_tick(&s, &in, out);
+    assert_tick(&v, &s, out, &worst);
+  }
+  vectors_close(&v);
+  assert_int_equal(commands, VECTORS_COMMANDS);
+  printf("%d commands, worst difference %.2g\n", commands, worst);
+}
+
+static void player_sends_thirty_radians_a_second_times_the_recorded_command(void **state) {
+  (void)state;
+  vectors v;
+  if (!vectors_open(&v, "inf", VECTORS_COMMANDS)) return;
+  vs_player *player;
+  assert_ok(vs_player_open("inf:", &player, err));
+  while (vectors_next(&v)) {
+    if (vectors_number(&v, TICK) == 0) assert_ok(vs_player_reset(player, 1, err));
+    vs_world world = {0};
+    vs_game game = {0};
+    world.ball.x_m = vectors_number(&v, BALL);
+    world.ball.y_m = vectors_number(&v, BALL + 1);
+    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+      int c = ROBOT + i * ROBOT_STEP;
+      world.robot[VS_OWN][i].pose =
+          (vs_pose){vectors_number(&v, c), vectors_number(&v, c + 1), vectors_number(&v, c + 2)};
+    }
+    vs_wheels out[VS_TEAM_SIZE];
+    assert_ok(vs_player_step(player, &world, &game, 0.033333, out, err));
+    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+      assert_near(out[i].left_radps, 30 * vectors_number(&v, OUT + i * 2), 30 * 1e-4);
+      assert_near(out[i].right_radps, 30 * vectors_number(&v, OUT + i * 2 + 1), 30 * 1e-4);
+    }
+  }
+  vs_player_close(player);
+  vectors_close(&v);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_recorded_tick_of_the_original_is_repeated),
+      cmocka_unit_test(player_sends_thirty_radians_a_second_times_the_recorded_command),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

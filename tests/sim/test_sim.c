@@ -1,0 +1,140 @@
+// Tests src/sim/sim.c on the contact drive: loading, placing, the true world, bad commands.
+#include <stdlib.h>
+#include <string.h>
+
+#include "assert_near.h"
+#include "vsss/field.h"
+#include "vsss/geom.h"
+#include "vsss/sim.h"
+
+static vs_model *model;
+static vs_sim *sim;
+
+static int open_sim(void **state) {
+  (void)state;
+  vs_model_def def = vs_model_def_default(VS_DRIVE_CONTACT);
+  vs_error err = {0};
+  if (vs_model_load(&def, &model, &err) != VS_OK || vs_sim_new(model, &sim, &err) != VS_OK) {
+    print_error("%s\n", err.text);
+    return -1;
+  }
+  return 0;
+}
+
+static int close_sim(void **state) {
+  (void)state;
+  vs_sim_free(sim);
+  vs_model_free(model);
+  return 0;
+}
+
+static void frames(int n, double left, double right) {
+  vs_wheels command[VS_TEAMS][VS_TEAM_SIZE] = {{{0}}};
+  command[VS_BLUE][1] = (vs_wheels){left, right};
+  for (int i = 0; i < n; i++) assert_ok(vs_sim_frame(sim, command, err));
+}
+
+// Blue 1 alone on the left half, facing +x, everybody else out of its way.
+static void place_alone(void) {
+  vs_world world = {0};
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    world.robot[VS_BLUE][i].pose = (vs_pose){-0.6 + 0.2 * i, 0.55, 0};
+    world.robot[VS_YELLOW][i].pose = (vs_pose){0.1 + 0.2 * i, 0.55, 0};
+  }
+  world.robot[VS_BLUE][1].pose = (vs_pose){-0.6, 0, 0};
+  world.ball.x_m = 0.6;
+  world.ball.y_m = -0.5;
+  vs_sim_place(sim, &world);
+}
+
+static void placed_world_reads_back_as_placed(void **state) {
+  (void)state;
+  vs_world world = {0}, read;
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
+    world.robot[i / 3][i % 3].pose = (vs_pose){-0.5 + 0.2 * i, 0.3 - 0.1 * i, 3.0 - i};
+  }
+  world.ball.x_m = 0.2;
+  world.ball.y_m = -0.5;
+  vs_sim_place(sim, &world);
+  vs_sim_world(sim, &read);
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
+    assert_near(read.robot[i / 3][i % 3].pose.x_m, -0.5 + 0.2 * i, 1e-12);
+    assert_near(read.robot[i / 3][i % 3].pose.y_m, 0.3 - 0.1 * i, 1e-12);
+    assert_near(read.robot[i / 3][i % 3].pose.theta_rad, 3.0 - i, 1e-9);
+    assert_near(read.robot[i / 3][i % 3].vx_mps, 0, 0);
+  }
+  assert_near(read.ball.x_m, 0.2, 1e-12);
+  assert_near(read.ball.z_m, VS_BALL_RADIUS_M, 1e-12);
+}
+
+static void full_command_drives_1_4_mps_straight(void **state) {
+  (void)state;
+  place_alone();
+  frames(24, VS_WHEEL_LIMIT_RADPS, VS_WHEEL_LIMIT_RADPS); // 0.8 s, about 0.95 m
+  vs_world world;
+  vs_sim_world(sim, &world);
+  vs_robot robot = world.robot[VS_BLUE][1];
+  assert_near(robot.vx_mps, 1.4, 0.03 * 1.4);
+  assert_near(robot.left_radps, VS_WHEEL_LIMIT_RADPS, 0.5);
+  assert_near(robot.pose.y_m, 0, 0.01);
+  assert_near(robot.pose.theta_rad, 0, 0.01);
+}
+
+static void time_counts_frames_and_placing_keeps_it(void **state) {
+  (void)state;
+  vs_sim_reset(sim, NULL);
+  frames(31, 0, 0);
+  place_alone();
+  vs_world world;
+  vs_sim_world(sim, &world);
+  assert_int_equal(world.seq, 31);
+  assert_int_equal(world.time_us, 1033333); // 31/30 s
+}
+
+static void robots_at_rest_stay_where_they_are(void **state) {
+  (void)state;
+  place_alone();
+  frames(60, 0, 0);
+  vs_world world;
+  vs_sim_world(sim, &world);
+  assert_near(world.robot[VS_BLUE][1].pose.x_m, -0.6, 1e-3);
+  assert_near(world.robot[VS_BLUE][1].pose.y_m, 0, 1e-3);
+  assert_near(world.robot[VS_BLUE][1].pose.theta_rad, 0, 2e-3);
+  assert_near(world.ball.x_m, 0.6, 1e-3);
+}
+
+static void command_that_is_not_a_number_is_refused_by_name(void **state) {
+  (void)state;
+  vs_wheels command[VS_TEAMS][VS_TEAM_SIZE] = {{{0}}};
+  command[VS_YELLOW][2].right_radps = NAN;
+  vs_error err = {0};
+  assert_int_equal(vs_sim_frame(sim, command, &err), VS_FAIL);
+  assert_non_null(strstr(err.text, "yellow robot 2"));
+}
+
+static void broken_state_is_reported_not_reset_silently(void **state) {
+  (void)state;
+  vs_world world = {0};
+  place_alone();
+  vs_sim_world(sim, &world);
+  world.ball.x_m = NAN;
+  vs_sim_place(sim, &world);
+  vs_wheels command[VS_TEAMS][VS_TEAM_SIZE] = {{{0}}};
+  vs_error err = {0};
+  assert_int_equal(vs_sim_frame(sim, command, &err), VS_FAIL);
+  assert_non_null(strstr(err.text, "Nan"));
+  vs_sim_reset(sim, NULL);
+  assert_ok(vs_sim_frame(sim, command, err));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(placed_world_reads_back_as_placed),
+      cmocka_unit_test(full_command_drives_1_4_mps_straight),
+      cmocka_unit_test(time_counts_frames_and_placing_keeps_it),
+      cmocka_unit_test(robots_at_rest_stay_where_they_are),
+      cmocka_unit_test(command_that_is_not_a_number_is_refused_by_name),
+      cmocka_unit_test(broken_state_is_reported_not_reset_silently),
+  };
+  return cmocka_run_group_tests(tests, open_sim, close_sim);
+}
