@@ -9,6 +9,13 @@
 
 #define ENTRY "vsss_player"
 
+// A plugin's own functions win over the program's of the same name. (The address sanitizer cannot load that way.)
+#ifdef __SANITIZE_ADDRESS__
+#define LOAD_FLAGS (RTLD_NOW | RTLD_LOCAL)
+#else
+#define LOAD_FLAGS (RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND)
+#endif
+
 struct vs_plugin {
   char file[512];
   char name[128]; // the api's own name, copied: readable after a crash
@@ -46,7 +53,7 @@ typedef struct load_call {
 
 static void run_dlopen(void *argument) {
   load_call *c = argument;
-  c->handle = dlopen(c->path, RTLD_NOW | RTLD_LOCAL);
+  c->handle = dlopen(c->path, LOAD_FLAGS);
 }
 
 static void run_entry(void *argument) {

@@ -12,7 +12,8 @@
 static const int fatal_signals[] = {SIGSEGV, SIGFPE, SIGILL, SIGBUS, SIGABRT};
 enum { SIGNALS = sizeof fatal_signals / sizeof *fatal_signals };
 
-static struct sigaction before[SIGNALS];         // written once, by install()
+static struct sigaction before[SIGNALS]; // who else wants each signal
+static pthread_mutex_t installing = PTHREAD_MUTEX_INITIALIZER;
 static _Thread_local sigjmp_buf *volatile guard; // where this thread returns to; NULL outside of foreign code
 
 static void on_signal(int number) {
@@ -23,17 +24,22 @@ static void on_signal(int number) {
   if (number == SIGABRT) raise(number);
 }
 
+// At every call, since other code of the program may have set handlers in between.
 static void install(void) {
+  pthread_mutex_lock(&installing);
   for (int i = 0; i < SIGNALS; i++) {
-    struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_ONSTACK};
+    struct sigaction now, action = {.sa_handler = on_signal, .sa_flags = SA_ONSTACK};
+    sigaction(fatal_signals[i], NULL, &now);
+    if (now.sa_handler == on_signal) continue;
+    before[i] = now;
     sigemptyset(&action.sa_mask);
-    sigaction(fatal_signals[i], &action, &before[i]);
+    sigaction(fatal_signals[i], &action, NULL);
   }
+  pthread_mutex_unlock(&installing);
 }
 
 int vs_guard_run(void (*call)(void *argument), void *argument) {
-  static pthread_once_t once = PTHREAD_ONCE_INIT;
-  pthread_once(&once, install);
+  install();
   // The handler needs a stack of its own: a plugin may crash by running out of this one.
   unsigned char stack[32768];
   stack_t mine = {.ss_sp = stack, .ss_size = sizeof stack}, theirs;

@@ -143,7 +143,7 @@ static void emc_player_step(void *state, const vs_world *world, const vs_game *g
     in.theta_rad[i] = r->pose.theta_rad;
     measured_wheels(r, in.wheel_mps[i]);
   }
-  emc_output out;
+  emc_output out = {0};
   emc_tick(s, &in, &out);
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     const double *speed = s->use_pid ? out.pid_mps[i] : out.target_mps[i];
