@@ -5,4 +5,6 @@
 int cmd_detect(int argc, char **argv);
 int cmd_train(int argc, char **argv);
 
+int cmd_replay(int argc, char **argv);
+
 #endif
