@@ -1,5 +1,5 @@
 // One match: place the pieces, step frame by frame, read the true world.
-#include "sim_internal.h"
+#include "drive.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -61,15 +61,19 @@ static void stop_everything(vs_sim *sim) {
   memset(sim->wheel, 0, sizeof sim->wheel);
 }
 
+// Where a reset leaves the pieces; the referee places them by its own rules.
+static const vs_world kick_off = {
+    .robot = {{{.pose = {-0.65, 0, 0}}, {.pose = {-0.375, 0.2, 0}}, {.pose = {-0.375, -0.2, 0}}},
+              {{.pose = {0.65, 0, VS_PI}}, {.pose = {0.375, -0.2, VS_PI}}, {.pose = {0.375, 0.2, VS_PI}}}}};
+
 void vs_sim_reset(vs_sim *sim, const vs_sim_params *params) {
   sim->params = params ? *params : vs_sim_params_default();
   double tau = sim->params.motor_tau_s;
   sim->lag = tau > 0 ? 1 - exp(-sim->mj->opt.timestep / tau) : 1;
   vs_randomize_apply(sim);
-  memcpy(sim->data->qpos, sim->mj->qpos0, sizeof(double) * sim->mj->nq);
   sim->data->time = 0;
   sim->frame = 0;
-  stop_everything(sim);
+  vs_sim_place(sim, &kick_off);
 }
 
 static void set_upright(double *qpos, vs_pose pose) {

@@ -42,10 +42,6 @@ struct vs_sim {
   wheel_state wheel[ROBOTS][SIDES];
 };
 
-// drive.c: once a step, before mj_step. target: see vs_drive_target.
-double vs_drive_target(const vs_sim_params *params, int robot, int side, double command_radps);
-void vs_drive_step(vs_sim *sim, const double target[ROBOTS][SIDES]);
-
 // randomize.c: makes sim->mj fit sim->params.
 void vs_randomize_apply(vs_sim *sim);
 

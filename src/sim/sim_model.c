@@ -1,5 +1,5 @@
 // Loads the MJCF, finds its parts by name and checks them against field.h.
-#include "sim_internal.h"
+#include "drive.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -68,7 +68,7 @@ static vs_status find(const mjModel *mj, const char *path, mjtObj type, const ch
 static vs_status expect(const char *path, const char *name, const char *what, double value, double expected,
                         double tolerance, vs_error *err) {
   if (fabs(value - expected) <= tolerance) return VS_OK;
-  return vs_fail(err, VS_FAIL, "%s: %s: %s is %g, but the field header says %g", path, name, what, value, expected);
+  return vs_fail(err, VS_FAIL, "%s: %s: %s is %g, but the program expects %g", path, name, what, value, expected);
 }
 
 #define TRY(call)                                                                                                      \
@@ -104,6 +104,13 @@ static vs_status bind_wheel(vs_model *model, const char *path, robot_address *ro
   TRY(expect(path, name, "distance from the middle", place[1], half_track, 1e-9, err));
   TRY(expect(path, name, "axle height", place[2], VS_WHEEL_RADIUS_M, 1e-9, err));
   robot->servo[side] = servo;
+  const double *limit = mj->actuator_forcerange + 2 * servo;
+  TRY(expect(path, name, "servo gain", mj->actuator_gainprm[mjNGAIN * servo], SERVO_GAIN_NMSPRAD, 1e-9, err));
+  TRY(expect(path, name, "servo speed gain", -mj->actuator_biasprm[mjNBIAS * servo + 2], SERVO_GAIN_NMSPRAD, 1e-9,
+             err));
+  TRY(expect(path, name, "torque limit", limit[1], SERVO_LIMIT_NM, 1e-9, err));
+  TRY(expect(path, name, "torque limit backwards", -limit[0], SERVO_LIMIT_NM, 1e-9, err));
+  TRY(expect(path, name, "rotor inertia", mj->dof_armature[robot->wheel_qvel[side]], ROTOR_INERTIA_KGM2, 1e-12, err));
   return VS_OK;
 }
 

@@ -1,0 +1,26 @@
+// The wheel servo and the wheels' grip, one set of numbers for both drives: the planar drive computes with them, the
+// contact drive's MJCF is checked against them at load.
+#ifndef VSSS_SIM_DRIVE_H
+#define VSSS_SIM_DRIVE_H
+
+#include "sim_internal.h"
+
+// Each wheel's torque is kv (command - speed), within the limit. The limit accelerates 0.48 kg (0.425 kg and the wheels'
+// inertia) at 4.2 m/s2; the gain makes the last 0.23 m/s a first-order approach with 55 ms: 0 to 1.4 m/s in 0.35 s.
+#define SERVO_GAIN_NMSPRAD 3.94e-3
+#define SERVO_LIMIT_NM     0.0303
+// About its axle: 12 g disc of 3 cm, 5.4e-6, and a geared rotor of 2e-5.
+#define ROTOR_INERTIA_KGM2 2e-5
+#define WHEEL_INERTIA_KGM2 (5.4e-6 + ROTOR_INERTIA_KGM2)
+#define WHEEL_FRICTION     0.9 // rubber on a matte board, field.md 6.3
+// Both skids are this far from the axle; they carry what acceleration takes off the wheels.
+#define SKID_DISTANCE_M 0.033
+#define COM_HEIGHT_M    0.0348 // Table 1: block from 0.5 to 6.5 cm, axles at 3 cm
+
+// sat(command) * gain, nothing inside the dead zone (field.md 6.3).
+double vs_drive_target(const vs_sim_params *params, int robot, int side, double command_radps);
+
+// Once a step, before mj_step: motors one step on, and their effect into ctrl (contact) or qfrc_applied (planar).
+void vs_drive_step(vs_sim *sim, const double target[ROBOTS][SIDES]);
+
+#endif
