@@ -10,7 +10,10 @@
 #include "vsss/geom.h"
 
 #define GRAVITY_MPS2 9.81
-#define SWEEPS       4 // of projected Gauss-Seidel, only for a robot that slips
+// How fast gripping wheels lose slip, as MuJoCo's contacts do: 2 / (solimp solref) of class wheel_floor. Since its
+// constraints leave out the turning of their axes, a curve is driven with a sideways slip of its acceleration / this.
+#define SLIP_DECAY_PER_S (2 / (0.95 * 0.015))
+#define SWEEPS           6 // of projected Gauss-Seidel, only for a robot that slips
 
 double vs_drive_target(const vs_sim_params *params, int robot, int side, double command_radps) {
   if (fabs(command_radps) < params->dead_zone_radps) return 0;
@@ -21,21 +24,23 @@ double vs_drive_target(const vs_sim_params *params, int robot, int side, double 
 // One robot's step, in its own axes: u forward, s to the left, w about the vertical.
 typedef struct traction {
   double dt, mass, inertia, friction;
-  double u, s, w;                // velocities at the end of the step without friction: MuJoCo's other forces included
-  double rim[SIDES];             // wheel rim speed at the end of the step without friction
+  double u, s, w;                // velocities at the end of the step without friction: other forces included
+  double push_u, push_s;         // contact forces of the last step, no more than the robot's weight
+  double rim[SIDES];             // rim speeds at the end of the step without friction
+  double keep[SIDES], keep_s;    // slip that may be left at the end of the step: forward at each wheel, sideways
   double along[SIDES], sideways; // friction forces on the robot, in newton; sideways: both wheels together
 } traction;
 
-// Slip of a wheel over the floor at the end of the step.
+// Slip of a wheel over the floor at the end of the step, more than what may be left.
 static double slip(const traction *t, int side) {
   double sign = side == LEFT ? -1 : 1;
   double u = t->u + t->dt * (t->along[LEFT] + t->along[RIGHT]) / t->mass;
   double w = t->w + t->dt * VS_HALF_TRACK_M * (t->along[RIGHT] - t->along[LEFT]) / t->inertia;
   double rim = t->rim[side] - t->dt * VS_WHEEL_RADIUS_M * VS_WHEEL_RADIUS_M / WHEEL_INERTIA_KGM2 * t->along[side];
-  return u + sign * VS_HALF_TRACK_M * w - rim;
+  return u + sign * VS_HALF_TRACK_M * w - rim - t->keep[side];
 }
 
-// Forces that leave no slip at all: two equations for the wheels, one sideways.
+// Forces that stop the slip: two equations for the wheels, one sideways.
 static void full_grip(traction *t) {
   double body = t->dt / t->mass, turn = t->dt * VS_HALF_TRACK_M * VS_HALF_TRACK_M / t->inertia;
   double a = body + turn + t->dt * VS_WHEEL_RADIUS_M * VS_WHEEL_RADIUS_M / WHEEL_INERTIA_KGM2, b = body - turn;
@@ -43,15 +48,17 @@ static void full_grip(traction *t) {
   double left = slip(t, LEFT), right = slip(t, RIGHT);
   t->along[LEFT] = (b * right - a * left) / (a * a - b * b);
   t->along[RIGHT] = (b * left - a * right) / (a * a - b * b);
-  t->sideways = -t->s / body;
+  t->sideways = (t->keep_s - t->s) / body;
 }
 
 // Loads of the wheels under these forces: the skid takes some when the robot speeds up or brakes, the outer wheel takes
-// from the inner one in a curve.
+// from the inner one in a curve. Pushes meet the robot near the floor, as friction does: a robot rocks back from what it
+// pushes until its lower edge touches.
 static void wheel_loads(const traction *t, double load[SIDES]) {
-  double skid = fabs(t->along[LEFT] + t->along[RIGHT]) * COM_HEIGHT_M / SKID_DISTANCE_M;
+  double skid = fabs(t->along[LEFT] + t->along[RIGHT] + t->push_u) * COM_HEIGHT_M / SKID_DISTANCE_M;
   double wheels = fmax(0, t->mass * GRAVITY_MPS2 - skid);
-  double shift = vs_clamp(t->sideways * COM_HEIGHT_M / (2 * VS_HALF_TRACK_M), -wheels / 2, wheels / 2);
+  double shift = (t->sideways + t->push_s) * COM_HEIGHT_M / (2 * VS_HALF_TRACK_M);
+  shift = vs_clamp(shift, -wheels / 2, wheels / 2);
   load[LEFT] = wheels / 2 - shift;
   load[RIGHT] = wheels / 2 + shift;
 }
@@ -70,16 +77,14 @@ static bool holds(const traction *t, const double load[SIDES]) {
   return true;
 }
 
-// Sliding: each wheel's force is shortened to its friction circle in turn, the others answering.
-static void slide(traction *t) {
+// Sliding: each wheel's force is shortened to its friction circle in turn, the others answering. Starts from the forces
+// of the last step, which change little while a robot slides.
+static void slide(traction *t, wheel_state wheel[SIDES]) {
   double response = t->dt * (1 / t->mass + VS_HALF_TRACK_M * VS_HALF_TRACK_M / t->inertia +
                              VS_WHEEL_RADIUS_M * VS_WHEEL_RADIUS_M / WHEEL_INERTIA_KGM2);
-  double weight = t->mass * GRAVITY_MPS2, load[SIDES] = {weight / 2, weight / 2};
-  double side_force[SIDES] = {0, 0};
-  double most = t->friction * weight;
-  double grip = t->sideways;
-  t->sideways = vs_clamp(grip, -most, most);
-  for (int side = LEFT; side < SIDES; side++) t->along[side] = vs_clamp(t->along[side], -most / 2, most / 2);
+  double load[SIDES], side_force[SIDES], grip = t->sideways;
+  for (int side = LEFT; side < SIDES; side++) t->along[side] = wheel[side].along_n;
+  t->sideways = wheel[LEFT].sideways_n + wheel[RIGHT].sideways_n;
   for (int sweep = 0; sweep < SWEEPS; sweep++) {
     wheel_loads(t, load);
     for (int side = LEFT; side < SIDES; side++) {
@@ -107,20 +112,26 @@ static void step_planar_robot(vs_sim *sim, int index) {
                 .mass = sim->mj->body_mass[address->body],
                 .inertia = sim->mj->body_inertia[3 * address->body + 2],
                 .friction = WHEEL_FRICTION * sim->params.floor_friction_scale};
-  double vx = v[0] + t.dt * push[0] / t.mass, vy = v[1] + t.dt * push[1] / t.mass;
-  t.w = v[2] + t.dt * push[2] / t.inertia;
-  double heading = d->qpos[address->qpos + 2] + t.dt * t.w; // at the end of the step
+  // Half a step back: the velocity found is held while the robot turns on, and its mean slip should be right.
+  double heading = d->qpos[address->qpos + 2] - 0.5 * t.dt * v[2];
   double c = cos(heading), n = sin(heading);
-  t.u = c * vx + n * vy;
-  t.s = -n * vx + c * vy;
+  double u = c * v[0] + n * v[1], sideways = -n * v[0] + c * v[1], keep = 1 - t.dt * SLIP_DECAY_PER_S;
+  double push_u = c * push[0] + n * push[1], push_s = -n * push[0] + c * push[1], weight = t.mass * GRAVITY_MPS2;
+  t.push_u = vs_clamp(push_u, -weight / 2, weight / 2);
+  t.push_s = vs_clamp(push_s, -weight / 2, weight / 2);
+  t.u = u + t.dt * push_u / t.mass;
+  t.s = sideways + t.dt * push_s / t.mass;
+  t.w = v[2] + t.dt * push[2] / t.inertia;
+  t.keep_s = keep * sideways;
   for (int side = LEFT; side < SIDES; side++) {
-    t.rim[side] =
-        VS_WHEEL_RADIUS_M * (wheel[side].speed_radps + t.dt * motor_torque(&wheel[side]) / WHEEL_INERTIA_KGM2);
+    double rim = VS_WHEEL_RADIUS_M * wheel[side].speed_radps;
+    t.rim[side] = rim + t.dt * VS_WHEEL_RADIUS_M * motor_torque(&wheel[side]) / WHEEL_INERTIA_KGM2;
+    t.keep[side] = keep * (u + (side == LEFT ? -1 : 1) * VS_HALF_TRACK_M * v[2] - rim);
   }
   double load[SIDES];
   full_grip(&t);
   wheel_loads(&t, load);
-  if (!holds(&t, load)) slide(&t);
+  if (!holds(&t, load)) slide(&t, wheel);
   double forward = t.along[LEFT] + t.along[RIGHT];
   applied[0] = c * forward - n * t.sideways;
   applied[1] = n * forward + c * t.sideways;
@@ -128,6 +139,8 @@ static void step_planar_robot(vs_sim *sim, int index) {
   for (int side = LEFT; side < SIDES; side++) {
     wheel[side].speed_radps =
         t.rim[side] / VS_WHEEL_RADIUS_M - t.dt * VS_WHEEL_RADIUS_M / WHEEL_INERTIA_KGM2 * t.along[side];
+    wheel[side].along_n = t.along[side];
+    wheel[side].sideways_n = t.sideways * share(load, side);
   }
 }
 

@@ -76,8 +76,12 @@ void vs_sim_reset(vs_sim *sim, const vs_sim_params *params) {
   vs_sim_place(sim, &kick_off);
 }
 
+// How far a standing robot's wheels sink into MuJoCo's soft floor: placed there it is at rest from the first step on.
+#define SETTLED_Z_M (-1.16e-4)
+
 static void set_upright(double *qpos, vs_pose pose) {
-  const double free_joint[7] = {pose.x_m, pose.y_m, 0, cos(pose.theta_rad / 2), 0, 0, sin(pose.theta_rad / 2)};
+  const double free_joint[7] = {
+      pose.x_m, pose.y_m, SETTLED_Z_M, cos(pose.theta_rad / 2), 0, 0, sin(pose.theta_rad / 2)};
   memcpy(qpos, free_joint, sizeof free_joint);
 }
 

@@ -27,8 +27,9 @@ struct vs_model {
 
 // The planar drive's wheels and what both drives remember of the commands. Plain data.
 typedef struct wheel_state {
-  double target_radps; // command after limit, gain, dead zone and lag
-  double speed_radps;  // planar only; the contact drive's wheels are joints
+  double target_radps;        // command after limit, gain, dead zone and lag
+  double speed_radps;         // planar only, as all below; the contact drive's wheels are joints
+  double along_n, sideways_n; // the floor's friction on it in the last step
 } wheel_state;
 
 struct vs_sim {

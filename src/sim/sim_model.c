@@ -13,7 +13,7 @@
 
 // Chosen by the agreement table of bench_sim: see tests/bench/bench_sim.c.
 #define CONTACT_SUBSTEPS 6
-#define PLANAR_SUBSTEPS  4
+#define PLANAR_SUBSTEPS  5
 
 const char *vs_drive_name(vs_drive drive) { return drive == VS_DRIVE_PLANAR ? "planar" : "contact"; }
 
