@@ -38,7 +38,7 @@ BENCH_BIN := $(patsubst %.c,$(B)/%,$(wildcard tests/bench/bench_*.c))
 TEST_BIN := $(TEST_SRC:%.c=$(B)/%)
 VSSS := $(if $(filter plain,$(FLAVOUR)),vsss,$(B)/vsss)
 
-.PHONY: all test asan tsan lint bench clean install help features tests
+.PHONY: all test asan tsan lint bench bench-peers clean install help features tests
 all: features $(VSSS) $(MODULES) $(EXTRA_ALL)
 
 
@@ -48,6 +48,7 @@ help:
 	@echo "make asan      the tests under the address and undefined-behaviour sanitizers; make tsan: threads"
 	@echo "make lint      layers, formatting, banned functions, static analysis"
 	@echo "make bench     the figures: 'bench NAME VALUE UNIT', medians"
+	@echo "make bench-peers  beside the benchmarks of peer projects; INSTALL=1 installs those"
 	@echo "make install   into PREFIX ($(PREFIX)); make clean"
 
 $(VSSS): $(MAIN_OBJ) $(B)/libvsss.a
@@ -85,6 +86,10 @@ lint:
 # N=what runs one of tests/bench/bench_what.c.
 bench: all $(BENCH_BIN)
 	@sh tests/bench/run.sh $(B) $(N)
+
+# Peer projects' benchmarks beside ours, where they are installed (INSTALL=1 installs them).
+bench-peers: all $(BENCH_BIN)
+	@sh tests/bench/peers.sh $(B) $(if $(INSTALL),--install)
 
 clean:
 	rm -rf build vsss

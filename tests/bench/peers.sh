@@ -1,0 +1,85 @@
+#!/bin/sh
+# Runs the benchmarks of peer projects beside ours, in one run on one core, and prints ours, theirs and the ratio.
+#   peers.sh BUILD_FOLDER [--install]
+# VSSS_PEERS          folder of the peers' benchmark scripts (default ../shared/tools/peers beside the checkout)
+# VSSS_PEERS_PYTHONS  folder of one Python environment per peer: rsim psim rsoccer sb3 envpool
+#                     (default build/peers; --install makes them with python3.10, 3.11 and 3.12 where those exist)
+# A peer that is not installed is named and left out.
+set -u
+folder=$1
+scripts=${VSSS_PEERS:-../shared/tools/peers}
+pythons=${VSSS_PEERS_PYTHONS:-build/peers}
+[ -d "$scripts" ] || { echo "peers: no folder $scripts; set VSSS_PEERS" >&2; exit 1; }
+
+python_of() { # version: a command, or one that a version manager keeps
+  command -v "python$1" 2>/dev/null && return
+  for p in "${PYENV_ROOT:-$HOME/.pyenv}"/versions/"$1".*/bin/python; do
+    [ -x "$p" ] && { echo "$p"; return; }
+  done
+}
+
+install_peer() { # name, python version, packages...
+  name=$1 version=$2
+  shift 2
+  python=$(python_of "$version")
+  [ "$python" ] || { echo "peers: $name needs Python $version, which is not here"; return; }
+  [ -d "$pythons/$name" ] || "$python" -m venv "$pythons/$name" || return
+  echo "peers: installing $name"
+  "$pythons/$name/bin/pip" install -q "pip<24" "setuptools<66" "wheel<0.39" 2>/dev/null
+  "$pythons/$name/bin/pip" install -q "$@"
+}
+
+if [ "${2:-}" = --install ]; then
+  mkdir -p "$pythons"
+  install_peer rsim 3.10 rc-robosim==1.2 "numpy<2"
+  install_peer psim 3.11 "pSim[all]==0.2.4"
+  install_peer rsoccer 3.10 rc-robosim==1.2 rsoccer-gym==1.4 gym==0.21.0 "numpy<1.24" "protobuf<3.21" "pyglet<2"
+  install_peer sb3 3.10 torch "numpy<2" stable-baselines3 rc-robosim==1.2 rsoccer-gym==1.4 gym==0.21.0 "protobuf<3.21" "pyglet<2"
+  install_peer envpool 3.12 envpool==1.2.7 torch
+  exit
+fi
+
+# run NAME SCRIPT KEY ARGUMENTS...: prints the number at KEY of the JSON line the script prints.
+run() {
+  name=$1 script=$2 key=$3
+  shift 3
+  [ -x "$pythons/$name/bin/python" ] || { echo "peers: $name is not installed (tests/bench/peers.sh $folder --install)" >&2; return 1; }
+  taskset -c 1 "$pythons/$name/bin/python" "$scripts/$script" "$@" 2>"$folder/peer.log" |
+    grep '^{' | tail -n 1 | sed -n "s/.*\"$key\": *\({\"[0-9]*\": *\)\{0,1\}\([0-9.]*\).*/\2/p" | grep . ||
+    { echo "peers: $name ($script) failed: $(tail -n 1 "$folder/peer.log")" >&2; return 1; }
+}
+
+# ours: "bench NAME VALUE UNIT" lines of our own benchmarks, run now on the same core.
+ours=$(for what in env learn; do
+  [ -x "$folder/tests/bench/bench_$what" ] && OPENBLAS_NUM_THREADS=1 taskset -c 1 "$folder/tests/bench/bench_$what"
+done)
+our() { printf '%s\n' "$ours" | awk -v n="$1" '$1 == "bench" && $2 == n {print $3; exit}'; }
+
+compare() { # label, our value, their value, unit
+  if [ -z "$2" ] || [ -z "$3" ]; then return; fi
+  printf 'bench %-44s %10.2f ratio  (ours %.1f, theirs %.1f %s)\n' "$1" \
+    "$(echo "$2 $3" | awk '{print $1 / $2}')" "$2" "$3" "$4"
+}
+
+planar=$(our planar_sim_s_per_s)
+contact=$(our contact_sim_s_per_s)
+learner=$(our learner_transitions_per_s_1_core)
+whole=$(our train_transitions_per_s_1_core)
+
+rsim=$(run rsim bench_rsim_raw.py sim_s_per_wall_s --seconds 8)
+rsim_hold=$(run rsim bench_rsim_raw.py sim_s_per_wall_s --seconds 8 --hold 40)
+psim=$(run psim bench_psim.py sim_s_per_wall_s --env raw --seconds 8)
+psim_zoo=$(run psim bench_psim.py sim_s_per_wall_s --env zoo --seconds 8)
+rsoccer=$(run rsoccer bench_rsoccer_gym.py sim_s_per_wall_s --api gym --seconds 8)
+envpool=$(run envpool bench_envpool_soccer.py sim_s_per_wall_s)
+compare planar/rsim_raw "$planar" "$rsim" "simulated s/s"
+compare planar/rsim_raw_with_contacts "$planar" "$rsim_hold" "simulated s/s"
+compare contact/rsim_raw "$contact" "$rsim" "simulated s/s"
+compare contact/rsim_raw_with_contacts "$contact" "$rsim_hold" "simulated s/s"
+compare planar/rsoccer_environment "$planar" "$rsoccer" "simulated s/s"
+compare planar/psim_raw_2d "$planar" "$psim" "simulated s/s"
+compare planar/psim_environment "$planar" "$psim_zoo" "simulated s/s"
+compare planar/envpool_soccer "$planar" "$envpool" "simulated s/s"
+compare learner/torch_learner "$learner" "$(run sb3 bench_torch_ppo_learner.py transitions_per_s_at_epochs)" "transitions/s per core"
+compare train/envpool_soccer_torch_ppo "$whole" "$(run envpool bench_envpool_soccer_ppo.py transitions_per_s --seconds 30)" "transitions/s per core"
+compare train/sb3_rsoccer "$whole" "$(run sb3 bench_sb3_rsoccer.py transitions_per_s --seconds 30)" "transitions/s per core"
