@@ -56,7 +56,8 @@ done)
 our() { printf '%s\n' "$ours" | awk -v n="$1" '$1 == "bench" && $2 == n {print $3; exit}'; }
 
 compare() { # label, our value, their value, unit
-  if [ -z "$2" ] || [ -z "$3" ]; then return; fi
+  [ "$3" ] || return 0 # said why above
+  [ "$2" ] || { echo "peers: our own figure for $1 is missing" >&2; return 0; }
   printf 'bench %-44s %10.2f ratio  (ours %.1f, theirs %.1f %s)\n' "$1" \
     "$(echo "$2 $3" | awk '{print $1 / $2}')" "$2" "$3" "$4"
 }
