@@ -10,6 +10,10 @@ folder=$1
 scripts=${VSSS_PEERS:-../shared/tools/peers}
 pythons=${VSSS_PEERS_PYTHONS:-build/peers}
 [ -d "$scripts" ] || { echo "peers: no folder $scripts; set VSSS_PEERS" >&2; exit 1; }
+mkdir -p "$pythons" "$folder/peers"
+scripts=$(cd "$scripts" && pwd)
+pythons=$(cd "$pythons" && pwd)
+scratch=$(cd "$folder/peers" && pwd) # some peers leave files where they run
 
 python_of() { # version: a command, or one that a version manager keeps
   command -v "python$1" 2>/dev/null && return
@@ -30,7 +34,6 @@ install_peer() { # name, python version, packages...
 }
 
 if [ "${2:-}" = --install ]; then
-  mkdir -p "$pythons"
   install_peer rsim 3.10 rc-robosim==1.2 "numpy<2"
   install_peer psim 3.11 "pSim[all]==0.2.4"
   install_peer rsoccer 3.10 rc-robosim==1.2 rsoccer-gym==1.4 gym==0.21.0 "numpy<1.24" "protobuf<3.21" "pyglet<2"
@@ -44,9 +47,9 @@ run() {
   name=$1 script=$2 key=$3
   shift 3
   [ -x "$pythons/$name/bin/python" ] || { echo "peers: $name is not installed (tests/bench/peers.sh $folder --install)" >&2; return 1; }
-  taskset -c 1 "$pythons/$name/bin/python" "$scripts/$script" "$@" 2>"$folder/peer.log" |
+  (cd "$scratch" && exec taskset -c 1 "$pythons/$name/bin/python" "$scripts/$script" "$@" 2>"$scratch/log") |
     grep '^{' | tail -n 1 | sed -n "s/.*\"$key\": *\({\"[0-9]*\": *\)\{0,1\}\([0-9.]*\).*/\2/p" | grep . ||
-    { echo "peers: $name ($script) failed: $(tail -n 1 "$folder/peer.log")" >&2; return 1; }
+    { echo "peers: $name ($script) failed: $(tail -n 1 "$scratch/log")" >&2; return 1; }
 }
 
 # ours: "bench NAME VALUE UNIT" lines of our own benchmarks, run now on the same core.
