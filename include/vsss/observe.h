@@ -9,7 +9,9 @@
 extern "C" {
 #endif
 
-// One frame of each robot of a team: out float[VS_TEAM_SIZE][VS_OBS_FRAME]. view is the measured world in team view,
+// One frame of each robot of a team, layout and scales in contract.h. Angles are those of the line from one point to the
+// other in the team's frame (not relative to the robot's heading), 0 where the points coincide. Values are clamped to
+// [-1, 1]; a number that is not finite comes out as one (check the world before). out float[VS_TEAM_SIZE][VS_OBS_FRAME]. view is the measured world in team view,
 // last_action float[VS_TEAM_SIZE][2] what this team last commanded, in [-1, 1]. adversary_order[k] is the robot index
 // shown in adversary slot k (a permutation of 0..2; NULL: 0, 1, 2).
 void vs_observe_frame(const vs_world *view, const vs_game *game, const float *last_action, const int *adversary_order,

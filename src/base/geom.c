@@ -3,6 +3,10 @@
 #include <math.h>
 
 double vs_wrap_rad(double angle_rad) {
+  // The common cases without a division; one turn less is exact there, so the result is remainder's to the bit.
+  if (angle_rad > -VS_PI && angle_rad <= VS_PI) return angle_rad;
+  if (angle_rad > VS_PI && angle_rad <= 3.0 * VS_PI) return angle_rad - 2.0 * VS_PI;
+  if (angle_rad <= -VS_PI && angle_rad > -3.0 * VS_PI) return angle_rad + 2.0 * VS_PI;
   double a = remainder(angle_rad, 2.0 * VS_PI);
   return a <= -VS_PI ? a + 2.0 * VS_PI : a;
 }

@@ -20,7 +20,7 @@ typedef struct scene {
   bearing robot_adversary[VS_TEAM_SIZE][VS_TEAM_SIZE]; // [i][slot]
 } scene;
 
-static float unit(double value) { return (float)vs_clamp(value, -1.0, 1.0); }
+static float unit(double value) { return (float)(value < -1.0 ? -1.0 : value > 1.0 ? 1.0 : value); }
 
 static bearing bearing_of(double from_x_m, double from_y_m, double to_x_m, double to_y_m) {
   // + 0.0 turns -0 into +0: a ball at y = -0 lies at angle pi like one at y = 0, not at -pi.
