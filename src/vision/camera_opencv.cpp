@@ -67,11 +67,12 @@ vs_status jpeg_encode(const uint8_t *bgr, int stride, int width, int height, int
 
 vs_status jpeg_decode(const uint8_t *jpeg, size_t size, uint8_t *bgr, int width, int height, vs_error *err) try {
   cv::Mat packed(1, (int)size, CV_8UC1, const_cast<uint8_t *>(jpeg));
-  cv::Mat into = view(bgr, 3 * width, width, height);
-  cv::Mat result = cv::imdecode(packed, cv::IMREAD_COLOR, &into);
+  // Not into our buffer at once: OpenCV 4.6 then gives that buffer back for a JPEG it could not read, too.
+  cv::Mat result = cv::imdecode(packed, cv::IMREAD_COLOR);
   if (result.empty()) return vs_fail(err, VS_FAIL, "a broken JPEG of %zu bytes", size);
-  if (result.data != bgr)
+  if (result.cols != width || result.rows != height)
     return vs_fail(err, VS_FAIL, "a JPEG of %d x %d where %d x %d was agreed", result.cols, result.rows, width, height);
+  result.copyTo(view(bgr, 3 * width, width, height));
   return VS_OK;
 } catch (const std::exception &e) {
   return vs_fail(err, VS_FAIL, "JPEG: %s", e.what());

@@ -31,7 +31,7 @@ vs_detector_def vs_detector_def_default(void) {
   return (vs_detector_def){.tag = vs_tag_def_field(),
                            .adversary = VS_YELLOW,
                            .ball = {5, 40, 0.5, 0.3},
-                           .team = {[VS_BLUE] = {195, 260, 0.45, 0.2}, [VS_YELLOW] = {46, 75, 0.45, 0.35}},
+                           .team = {[VS_BLUE] = {195, 260, 0.3, 0.3}, [VS_YELLOW] = {46, 75, 0.45, 0.35}},
                            .tag_paper_m = VS_TAG_PAPER_M,
                            .patch_m = VS_PATCH_M};
 }

@@ -1,0 +1,87 @@
+// src/vision/vision_config.c
+#include <string.h>
+
+#include "assert_near.h"
+#include "vsss/tag.h"
+#include "vsss/track.h"
+
+enum { ROOM = 80 };
+static vs_detector_def detector;
+static vs_track_def tracker;
+static vs_camera_def camera;
+static char family[32];
+static vs_config_key rows[ROOM + 1];
+
+static int schema(void) {
+  memset(rows, 0, sizeof rows);
+  detector = vs_detector_def_default();
+  tracker = vs_track_def_default();
+  camera = vs_camera_def_default();
+  return vs_vision_schema(&detector, &tracker, &camera, family, rows, ROOM);
+}
+
+static void every_row_has_a_name_of_the_section_a_target_and_help(void **state) {
+  (void)state;
+  int n = schema();
+  assert_true(n > 30 && n < ROOM); // below its capacity: nothing was cut off
+  for (int i = 0; i < n; i++) {
+    assert_int_equal(strncmp(rows[i].name, "vision.", 7), 0);
+    assert_non_null(rows[i].target);
+    assert_true(strlen(rows[i].help) > 3);
+    for (int j = 0; j < i; j++) {
+      assert_string_not_equal(rows[i].name, rows[j].name);
+      assert_ptr_not_equal(rows[i].target, rows[j].target);
+    }
+  }
+}
+
+static void a_file_sets_what_it_names_and_leaves_the_rest(void **state) {
+  (void)state;
+  schema();
+  assert_ok(vs_config_parse("field.ini",
+                            "[vision]\ntag_family = tag25h9\nrobot2_tag = 11\nrobot2_yaw_rad = 1.5\n"
+                            "ball_hue_min_deg = 8\nexposure_ms = 3\ntag_decimate = 1.5\n",
+                            rows, err));
+  assert_string_equal(detector.tag.family, "tag25h9");
+  assert_int_equal(tracker.tag_id[2], 11);
+  assert_int_equal(tracker.tag_id[1], 1);
+  assert_near(tracker.tag_yaw_rad[2], 1.5, 0);
+  assert_near(detector.ball.hue_min_deg, 8, 0);
+  assert_near(detector.ball.hue_max_deg, vs_detector_def_default().ball.hue_max_deg, 0);
+  assert_near(camera.exposure_ms, 3, 0);
+  assert_near(detector.tag.decimate, 1.5, 0);
+}
+
+static void without_a_file_the_family_is_the_default(void **state) {
+  (void)state;
+  schema();
+  assert_string_equal(detector.tag.family, VS_TAG_FAMILY);
+  assert_ptr_equal(detector.tag.family, family);
+}
+
+static void a_value_out_of_range_is_refused_with_its_line(void **state) {
+  (void)state;
+  schema();
+  vs_error err;
+  assert_int_equal(vs_config_parse("field.ini", "[vision]\n\ntag_height_m = 80\n", rows, &err), VS_USAGE);
+  assert_non_null(strstr(err.text, "field.ini:3"));
+  assert_non_null(strstr(err.text, "vision.tag_height_m"));
+}
+
+static void no_more_than_the_capacity_is_written(void **state) {
+  (void)state;
+  memset(rows, 0, sizeof rows);
+  assert_int_equal(vs_vision_schema(&detector, &tracker, &camera, family, rows, 5), 5);
+  assert_null(rows[5].name);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_row_has_a_name_of_the_section_a_target_and_help),
+      cmocka_unit_test(a_file_sets_what_it_names_and_leaves_the_rest),
+      cmocka_unit_test(without_a_file_the_family_is_the_default),
+      cmocka_unit_test(a_value_out_of_range_is_refused_with_its_line),
+      cmocka_unit_test(no_more_than_the_capacity_is_written),
+  };
+  return cmocka_run_group_tests_name("vision/vision_config", tests, NULL, NULL);
+}
