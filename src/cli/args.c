@@ -97,3 +97,12 @@ vs_status vs_args_parse(int argc, char **argv, const char *synopsis, const char 
   }
   return VS_OK;
 }
+
+vs_status vs_cli_team(const char *flag, const char *name, vs_team *out, vs_error *err) {
+  for (int t = 0; t < VS_TEAMS; t++)
+    if (!strcmp(name, vs_team_name((vs_team)t))) {
+      *out = (vs_team)t;
+      return VS_OK;
+    }
+  return vs_fail(err, VS_USAGE, "%s %s: expected blue or yellow", flag, name);
+}

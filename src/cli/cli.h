@@ -5,6 +5,7 @@
 #include <stdbool.h>
 
 #include "vsss/status.h"
+#include "vsss/world.h"
 
 typedef enum vs_flag_type { VS_FLAG_SWITCH, VS_FLAG_INT, VS_FLAG_REAL, VS_FLAG_TEXT, VS_FLAG_LIST } vs_flag_type;
 
@@ -30,6 +31,12 @@ typedef struct vs_flag_list {
 // allowed). --help prints usage, synopsis and the flags, and sets *help: the command returns 0 at once.
 vs_status vs_args_parse(int argc, char **argv, const char *synopsis, const char *about, const vs_flag *flags,
                         vs_flag_list *positional, bool *help, vs_error *err);
+
+// "blue" or "yellow"; flag names who gave it, in the error.
+vs_status vs_cli_team(const char *flag, const char *name, vs_team *out, vs_error *err);
+
+// Asks for real-time priority; a refusal is a note on stderr, not an error.
+void vs_cli_realtime(int priority);
 
 // Prints "vsss COMMAND: text" on stderr and returns the exit status that belongs to it.
 int vs_cli_error(const char *command, const vs_error *err);

@@ -3,6 +3,7 @@
 #define VSSS_CLI_COMMANDS_H
 
 int cmd_detect(int argc, char **argv);
+int cmd_field(int argc, char **argv);
 int cmd_train(int argc, char **argv);
 
 int cmd_replay(int argc, char **argv);

@@ -13,6 +13,7 @@ typedef struct command {
 
 static const command commands[] = {
     {"detect", cmd_detect, "find tags in a picture and print their corners"},
+    {"field", cmd_field, "play on a real field: camera, policy, radio"},
     {"train", cmd_train, "learn by self-play; writes a policy as ONNX"},
     {"replay", cmd_replay, "show a log of lcm-logger as text or video, or send it again"},
     {NULL, NULL, NULL},

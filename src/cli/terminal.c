@@ -7,10 +7,16 @@
 
 #include "cli.h"
 #include "vsss/clock.h"
+#include "vsss/realtime.h"
 
 int vs_cli_error(const char *command, const vs_error *err) {
   fprintf(stderr, "vsss %s: %s\n", command, err->text);
   return err->status;
+}
+
+void vs_cli_realtime(int priority) {
+  vs_error err = {0};
+  if (vs_realtime_try(priority, &err) != VS_OK) fprintf(stderr, "going on all the same: %s\n", err.text);
 }
 
 static volatile sig_atomic_t interrupted;

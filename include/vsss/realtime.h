@@ -1,0 +1,21 @@
+// Asking the system for punctuality.
+#ifndef VSSS_REALTIME_H
+#define VSSS_REALTIME_H
+
+#include <stddef.h>
+
+#include "vsss/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Puts the calling thread, and those it starts from now on, before everything that is not real time (SCHED_FIFO at
+// priority, 1 to 99) and keeps the process's memory from being swapped out. VS_FAIL: refused, with the lines for
+// /etc/security/limits.d that allow it; everything goes on as before.
+vs_status vs_realtime_try(int priority, vs_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

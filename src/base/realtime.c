@@ -1,0 +1,26 @@
+#include "vsss/realtime.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <sched.h>
+#include <string.h>
+#include <sys/mman.h>
+
+vs_status vs_realtime_try(int priority, vs_error *err) {
+  int low = sched_get_priority_min(SCHED_FIFO), high = sched_get_priority_max(SCHED_FIFO);
+  if (priority < low || priority > high)
+    return vs_fail(err, VS_USAGE, "real-time priority %d: allowed are %d to %d", priority, low, high);
+  struct sched_param wanted = {.sched_priority = priority};
+  int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
+  if (refused)
+    return vs_fail(err, VS_FAIL,
+                   "no real-time priority (%s); allow it in /etc/security/limits.d/vsss.conf with the lines "
+                   "'@vsss - rtprio 60' and '@vsss - memlock unlimited' and log in again",
+                   strerror(refused));
+  if (mlockall(MCL_CURRENT | MCL_FUTURE))
+    return vs_fail(err, VS_FAIL,
+                   "memory may be swapped out (%s); allow locking it in /etc/security/limits.d/vsss.conf with the line "
+                   "'@vsss - memlock unlimited' and log in again",
+                   strerror(errno));
+  return VS_OK;
+}

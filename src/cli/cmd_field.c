@@ -1,0 +1,182 @@
+// vsss field: play on a real field, or in a rig.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli.h"
+#include "commands.h"
+#include "field_config.h"
+#include "field_report.h"
+#include "vsss/clock.h"
+#include "vsss/field_loop.h"
+#include "vsss/frame_stream.h"
+#include "world_csv.h"
+
+typedef struct options {
+  const char *camera, *radio, *policy, *team, *attack, *calib, *config, *lcm, *stats, *record;
+  double seconds;
+  int seed, rt;
+  bool no_lcm, help;
+} options;
+
+static const char about[] =
+    "Newest frame -> tags -> poses -> tracked world -> policy -> wheels -> safety -> bytes to the radio, then LCM.\n"
+    "Ctrl-C stops the robots and prints where the time went. Without --radio it is a dry run.";
+
+static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
+  *o = (options){.seed = 1};
+  char camera_help[256];
+  snprintf(camera_help, sizeof camera_help, "%s", vs_camera_sources());
+  const vs_flag flags[] = {
+      {"camera", VS_FLAG_TEXT, &o->camera, "SOURCE", camera_help, 0, 0},
+      {"radio", VS_FLAG_TEXT, &o->radio, "DEVICE", "serial device of the robots' radio", 0, 0},
+      {"policy", VS_FLAG_TEXT, &o->policy, "URI", "who decides; default: field.ini's", 0, 0},
+      {"team", VS_FLAG_TEXT, &o->team, "TEAM", "ours: blue or yellow", 0, 0},
+      {"attack", VS_FLAG_TEXT, &o->attack, "+x|-x", "towards which end of the calibration's frame we play", 0, 0},
+      {"calib", VS_FLAG_TEXT, &o->calib, "FILE", "calibration of the camera ('vsss calibrate' makes it)", 0, 0},
+      {"config", VS_FLAG_TEXT, &o->config, "FILE", "instead of deploy/config/field.ini", 0, 0},
+      {"seconds", VS_FLAG_REAL, &o->seconds, "S", "then stop; 0: until Ctrl-C or the recording's end", 0, 86400},
+      {"seed", VS_FLAG_INT, &o->seed, "N", "of a policy that draws", 0, 2147483647},
+      {"stats", VS_FLAG_TEXT, &o->stats, "FILE", "write the latencies and counters as JSON at the end", 0, 0},
+      {"record", VS_FLAG_TEXT, &o->record, "FILE", "write every frame's tracked world as CSV; valid: seen in it", 0, 0},
+      {"rt", VS_FLAG_INT, &o->rt, "PRIO", "real-time priority, such as 50, and locked memory; 0: none", 0, 99},
+      {"lcm", VS_FLAG_TEXT, &o->lcm, "URL", "of the messages", 0, 0},
+      {"no-lcm", VS_FLAG_SWITCH, &o->no_lcm, NULL, "publish nothing, hear no referee", 0, 0},
+      {NULL, VS_FLAG_SWITCH, NULL, NULL, NULL, 0, 0},
+  };
+  vs_status s = vs_args_parse(argc, argv,
+                              "field --camera SOURCE [--radio DEVICE] [--policy URI] [--team blue|yellow] "
+                              "[--attack +x|-x] [--calib FILE] [--config FILE]",
+                              about, flags, NULL, &o->help, err);
+  if (s == VS_OK && !o->help && !o->camera)
+    return vs_fail(err, VS_USAGE, "--camera is missing; give %s", vs_camera_sources());
+  return s;
+}
+
+// What the flags say goes before what the file says. Blue attacks +x and yellow -x unless told otherwise.
+static vs_status fill(const options *o, vs_field_config *config, vs_error *err) {
+  vs_status s = vs_field_config_load(o->config, config, err);
+  if (s != VS_OK) return s;
+  vs_field_def *def = &config->def;
+  def->camera = o->camera;
+  if (o->radio) def->radio = o->radio;
+  if (o->policy) def->policy = o->policy;
+  if (o->team) s = vs_cli_team("--team", o->team, &def->team, err);
+  if (s != VS_OK) return s;
+  const char *attack = o->attack ? o->attack : *config->attack ? config->attack : def->team == VS_BLUE ? "+x" : "-x";
+  if (strcmp(attack, "+x") && strcmp(attack, "-x"))
+    return vs_fail(err, VS_USAGE, "--attack %s: expected +x or -x", attack);
+  def->tracker.attack_plus_x = !strcmp(attack, "+x");
+  def->calib = o->calib;
+  def->seed = (uint64_t)o->seed;
+  def->lcm = !o->no_lcm;
+  def->lcm_url = o->lcm;
+  return VS_OK;
+}
+
+// A rig lays the calibration of its camera beside the camera.
+static void use_rig_calib(const options *o, vs_field_def *def, char *path, size_t size) {
+  if (o->calib || strncmp(o->camera, "rig:", 4)) return;
+  const char *camera = o->camera + 4, *slash = strrchr(camera, '/');
+  if (!*camera)
+    vs_rig_default_path("calib.ini", path, size);
+  else
+    snprintf(path, size, "%.*scalib.ini", slash ? (int)(slash - camera + 1) : 0, camera);
+  FILE *there = fopen(path, "r");
+  if (!there) return;
+  fclose(there);
+  def->calib = path;
+}
+
+static void print_setup(const vs_field *field, const vs_field_def *def, const char *note) {
+  const vs_camera_info *camera = vs_field_camera(field);
+  printf("camera  %s  %dx%d", camera->name, camera->width, camera->height);
+  if (camera->fps > 0) printf(", %g pictures a second", camera->fps);
+  if (camera->exposure_ms > 0) printf(", exposure %.1f ms", camera->exposure_ms);
+  printf("\npolicy  %s for %s, attacking %s\n", def->policy, vs_team_name(def->team),
+         def->tracker.attack_plus_x ? "+x" : "-x");
+  if (def->radio)
+    printf("radio   %s, %d baud\n", def->radio, def->baud);
+  else
+    printf("radio   none: a dry run, no robot is driven (--radio DEVICE)\n");
+  if (camera->exposure_ms > 5.0) printf("warning: exposed longer than 5 ms tags blur and robots in motion are lost\n");
+  printf("%s", note);
+  fflush(stdout);
+}
+
+// For the record an object is valid only in the frames it was seen in: in between the tracker predicts.
+static void mark_seen(const vs_field *field, const vs_field_def *def, vs_world *world) {
+  const vs_tracker *tracker = vs_field_tracker(field);
+  vs_team other = def->team == VS_BLUE ? VS_YELLOW : VS_BLUE;
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    world->robot[def->team][i].valid = tracker->robot[VS_OWN][i].seen_us == world->time_us;
+    world->robot[other][i].valid = tracker->robot[VS_ADVERSARY][i].seen_us == world->time_us;
+  }
+  world->ball.valid = tracker->ball.seen_us == world->time_us;
+}
+
+static int valid_robots(const vs_world *world, vs_team team) {
+  int n = 0;
+  for (int i = 0; i < VS_TEAM_SIZE; i++) n += world->robot[team][i].valid;
+  return n;
+}
+
+static void show_progress(vs_progress *progress, const vs_field_def *def, double share,
+                          const vs_field_tick_result *tick) {
+  vs_team other = def->team == VS_BLUE ? VS_YELLOW : VS_BLUE;
+  char text[120];
+  snprintf(text, sizeof text, "sees own %d, other %d, ball %d  camera to radio %5.1f ms%s",
+           valid_robots(&tick->world, def->team), valid_robots(&tick->world, other), tick->world.ball.valid,
+           1e-3 * (double)tick->age_us, tick->stop ? "  STOP" : "");
+  vs_progress_show(progress, share, text);
+}
+
+static vs_status run(const options *o, const vs_field_def *def, vs_field *field, vs_error *err) {
+  vs_world_csv record;
+  vs_status s = vs_world_csv_open(o->record, &record, err);
+  if (s != VS_OK) return s;
+  vs_progress progress;
+  vs_progress_start(&progress);
+  int64_t start_us = vs_clock_monotonic_us();
+  double spent_s = 0;
+  while (!vs_cli_interrupted() && (o->seconds == 0.0 || spent_s < o->seconds)) {
+    vs_field_tick_result tick;
+    s = vs_field_tick(field, &tick, err);
+    if (s != VS_OK || tick.got == VS_CAMERA_END) break;
+    spent_s = 1e-6 * (double)(vs_clock_monotonic_us() - start_us);
+    if (tick.got != VS_CAMERA_FRAME) continue;
+    show_progress(&progress, def, o->seconds > 0 ? spent_s / o->seconds : 0, &tick);
+    mark_seen(field, def, &tick.world);
+    vs_world_csv_write(&record, &tick.world, VS_EVENT_NONE);
+  }
+  vs_progress_clear(&progress);
+  vs_error at_close = {0};
+  if (vs_world_csv_close(&record, &at_close) != VS_OK && s == VS_OK) return vs_fail(err, VS_FAIL, "%s", at_close.text);
+  return s;
+}
+
+int cmd_field(int argc, char **argv) {
+  options o;
+  vs_error err = {0};
+  static vs_field_config config;
+  static vs_field_stats stats;
+  vs_field *field = NULL;
+  char note[1200] = "", rig_calib[300];
+  vs_camera_register(vs_frame_stream_camera());
+  vs_status s = parse(argc, argv, &o, &err);
+  if (s == VS_OK && o.help) return 0;
+  if (s == VS_OK) s = fill(&o, &config, &err);
+  if (s != VS_OK) return vs_cli_error("field", &err);
+  use_rig_calib(&o, &config.def, rig_calib, sizeof rig_calib);
+  vs_cli_catch_interrupts();
+  if (o.rt) vs_cli_realtime(o.rt);
+  s = vs_field_new(&config.def, &field, note, sizeof note, &err);
+  if (s != VS_OK) return vs_cli_error("field", &err);
+  print_setup(field, &config.def, note);
+  s = run(&o, &config.def, field, &err);
+  vs_field_get_stats(field, &stats);
+  vs_field_free(field); // stops the robots
+  vs_field_report_print(&stats);
+  if (o.stats && s == VS_OK) s = vs_field_report_json(o.stats, &stats, &err);
+  return s == VS_OK ? 0 : vs_cli_error("field", &err);
+}

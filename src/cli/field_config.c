@@ -1,0 +1,49 @@
+#include "field_config.h"
+
+#include <string.h>
+
+#include "cli.h"
+#include "vsss/config.h"
+#include "vsss/paths.h"
+
+enum { ROWS = 80, OWN_ROWS = 10 };
+
+static vs_status load(const char *path, vs_field_config *c, vs_error *err) {
+  vs_field_def *d = &c->def;
+  vs_config_key rows[ROWS] = {
+      {"field.policy", VS_CONFIG_TEXT, c->policy, sizeof c->policy, 0, 0, "who decides: a player URI"},
+      {"field.team", VS_CONFIG_TEXT, c->team, sizeof c->team, 0, 0, "blue or yellow"},
+      {"field.attack", VS_CONFIG_TEXT, c->attack, sizeof c->attack, 0, 0, "+x or -x; empty: blue +x, yellow -x"},
+      {"field.duration_s", VS_CONFIG_REAL, &d->duration_s, 0, 1, 86400, "of a match, until a referee says otherwise"},
+      {"field.camera_height_m", VS_CONFIG_REAL, &d->camera_height_m, 0, 1, 5, "where there is no calibration"},
+      {"radio.device", VS_CONFIG_TEXT, c->radio, sizeof c->radio, 0, 0, "serial device; empty: a dry run"},
+      {"radio.baud", VS_CONFIG_INT, &d->baud, 0, 1200, 4000000, "of the serial device"},
+      {"radio.robot0_id", VS_CONFIG_INT, &c->radio_id[0], 0, 0, 255, "number on the air of robot 0"},
+      {"radio.robot1_id", VS_CONFIG_INT, &c->radio_id[1], 0, 0, 255, "of robot 1"},
+      {"radio.robot2_id", VS_CONFIG_INT, &c->radio_id[2], 0, 0, 255, "of robot 2"},
+  };
+  int n =
+      vs_vision_schema(&d->detector, &d->tracker, &d->camera_def, c->tag_family, rows + OWN_ROWS, ROWS - OWN_ROWS - 1);
+  rows[OWN_ROWS + n].name = NULL;
+  return vs_config_load(path, rows, err);
+}
+
+vs_status vs_field_config_load(const char *path, vs_field_config *c, vs_error *err) {
+  memset(c, 0, sizeof *c);
+  vs_field_def *d = &c->def;
+  *d = vs_field_def_default();
+  for (int i = 0; i < VS_TEAM_SIZE; i++) c->radio_id[i] = d->radio_id[i];
+  char found[512];
+  vs_status s = VS_OK;
+  if (!path) {
+    s = vs_path_find("deploy/config/field.ini", found, sizeof found, err);
+    path = found;
+  }
+  if (s == VS_OK) s = load(path, c, err);
+  if (s != VS_OK) return s;
+  if (*c->policy) d->policy = c->policy;
+  if (*c->radio) d->radio = c->radio;
+  for (int i = 0; i < VS_TEAM_SIZE; i++) d->radio_id[i] = (uint8_t)c->radio_id[i];
+  if (*c->team && vs_cli_team("field.team =", c->team, &d->team, err) != VS_OK) return vs_fail_prefix(err, "%s", path);
+  return VS_OK;
+}

@@ -1,0 +1,16 @@
+// deploy/config/field.ini: what a team's field needs, apart from the camera's calibration.
+#ifndef VSSS_CLI_FIELD_CONFIG_H
+#define VSSS_CLI_FIELD_CONFIG_H
+
+#include "vsss/field_loop.h"
+
+typedef struct vs_field_config {
+  vs_field_def def; // its texts point into this struct
+  char policy[256], radio[256], team[16], attack[8], tag_family[32];
+  int radio_id[VS_TEAM_SIZE];
+} vs_field_config;
+
+// path NULL: deploy/config/field.ini of this program. attack stays "" where the file does not say.
+vs_status vs_field_config_load(const char *path, vs_field_config *out, vs_error *err);
+
+#endif

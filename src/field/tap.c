@@ -1,0 +1,191 @@
+#include "tap.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "vsss/clock.h"
+
+#define RADIO_PERIOD_US 200000
+#define STATS_PERIOD_US 1000000
+
+static void referee_spoke(const vs_message *message, void *user) {
+  vs_tap *tap = user;
+  tap->heard = message->as.referee;
+  tap->heard_us = vs_clock_monotonic_us();
+  tap->news = true;
+}
+
+vs_status vs_tap_open(vs_tap *tap, const vs_field_def *def, const vs_calib *calib, char *note, size_t note_size,
+                      vs_error *err) {
+  memset(tap, 0, sizeof *tap);
+  tap->team = def->team;
+  tap->policy = def->policy;
+  tap->radio = def->radio ? def->radio : "none";
+  tap->calib = *calib;
+  tap->tag_height_m = def->tracker.tag_height_m;
+  tap->patch_height_m = def->tracker.patch_height_m;
+  tap->ball_height_m = def->tracker.ball_height_m;
+  if (!def->lcm) return VS_OK;
+  vs_error why = {0};
+  vs_status s = vs_bus_open(def->lcm_url, &tap->bus, &why);
+  if (s == VS_OK) s = vs_bus_subscribe(tap->bus, VS_CH_REFEREE, false, referee_spoke, tap, &why);
+  if (s == VS_OK) return VS_OK;
+  vs_tap_close(tap);
+  if (def->lcm_url) return vs_fail(err, s, "%s", why.text);
+  size_t used = strlen(note);
+  snprintf(note + used, note_size - used, "playing on without LCM: %s\n", why.text);
+  return VS_OK;
+}
+
+void vs_tap_close(vs_tap *tap) {
+  vs_bus_close(tap->bus);
+  tap->bus = NULL;
+}
+
+bool vs_tap_listen(vs_tap *tap) {
+  if (!tap->bus) return false;
+  vs_bus_handle(tap->bus, 0, NULL, NULL);
+  bool news = tap->news;
+  tap->news = false;
+  return news;
+}
+
+static int64_t epoch_us(int64_t monotonic_us) { return monotonic_us + vs_clock_wall_us() - vs_clock_monotonic_us(); }
+
+static void send(vs_tap *tap, vs_channel channel, int64_t capture_us) {
+  vs_message *m = &tap->message;
+  m->channel = channel;
+  m->utime_us = 0;
+  m->utime_capture_us = epoch_us(capture_us);
+  m->seq = tap->seq[channel]++;
+  if (vs_bus_publish(tap->bus, m, NULL) != VS_OK) tap->lost++;
+}
+
+static void put_tag(const vs_tap *tap, const vs_tag *from, vs_msg_tag *to) {
+  to->id = from->id;
+  to->hamming = from->hamming;
+  to->margin = from->margin;
+  memcpy(to->centre_px, from->centre_px, sizeof to->centre_px);
+  memcpy(to->corner_px, from->corner_px, sizeof to->corner_px);
+  double x[4], y[4];
+  for (int i = 0; i < 4; i++)
+    vs_calib_to_field(&tap->calib, from->corner_px[i][0], from->corner_px[i][1], tap->tag_height_m, &x[i], &y[i]);
+  to->pose.x_m = (x[0] + x[1] + x[2] + x[3]) / 4;
+  to->pose.y_m = (y[0] + y[1] + y[2] + y[3]) / 4;
+  to->pose.theta_rad = atan2(y[3] + y[2] - y[0] - y[1], x[3] + x[2] - x[0] - x[1]);
+}
+
+static void put_blobs(const vs_tap *tap, vs_msg_detections *m, vs_blob_kind kind, const vs_blob *blob, int n,
+                      double height_m) {
+  for (int i = 0; i < n && m->n_blobs < VS_BUS_BLOBS; i++) {
+    vs_msg_blob *to = &m->blob[m->n_blobs++];
+    *to = (vs_msg_blob){kind, {blob[i].x_px, blob[i].y_px}, blob[i].area_px, blob[i].confidence, 0, 0};
+    vs_calib_to_field(&tap->calib, blob[i].x_px, blob[i].y_px, height_m, &to->x_m, &to->y_m);
+  }
+}
+
+void vs_tap_frame(vs_tap *tap, const vs_world *world, const vs_game *game, const vs_detections *seen, int width_px,
+                  int height_px) {
+  if (!tap->bus) return;
+  tap->message.as.world = (vs_msg_world){.world = *world, .game = *game, .asks_team = -1};
+  send(tap, VS_CH_STATE, world->time_us);
+
+  vs_msg_detections *m = &tap->message.as.detections;
+  m->width_px = width_px;
+  m->height_px = height_px;
+  m->n_tags = seen->tags < VS_BUS_TAGS ? seen->tags : VS_BUS_TAGS;
+  for (int i = 0; i < m->n_tags; i++) put_tag(tap, &seen->tag[i], &m->tag[i]);
+  m->n_blobs = 0;
+  put_blobs(tap, m, VS_BLOB_BALL, seen->ball, seen->balls, tap->ball_height_m);
+  put_blobs(tap, m, VS_BLOB_OPPONENT, seen->adversary, seen->adversaries, tap->patch_height_m);
+  send(tap, VS_CH_DETECTIONS, seen->capture_us);
+}
+
+void vs_tap_decision(vs_tap *tap, const vs_control *control, const vs_world *world,
+                     const vs_wheels wheels[VS_TEAM_SIZE], bool stop) {
+  if (!tap->bus) return;
+  vs_msg_cmd *cmd = &tap->message.as.cmd;
+  cmd->team = tap->team;
+  memcpy(cmd->wheels, wheels, sizeof cmd->wheels);
+  cmd->stop = stop;
+  cmd->state_seq = world->seq;
+  snprintf(cmd->source, sizeof cmd->source, "%s", tap->policy);
+  send(tap, VS_CH_CMD, world->time_us);
+
+  vs_msg_policy *m = &tap->message.as.policy;
+  m->team = tap->team;
+  m->contract_hash = vs_contract_hash();
+  vs_observer_write(vs_control_observer(control), &m->observation[0][0]);
+  memcpy(m->action, vs_control_action(control), sizeof m->action);
+  snprintf(m->player, sizeof m->player, "%s", tap->policy);
+  send(tap, VS_CH_POLICY, world->time_us);
+}
+
+static void send_radio(vs_tap *tap, const vs_field_stats *all, const vs_radio_link *link, int64_t now_us) {
+  vs_msg_radio *m = &tap->message.as.radio;
+  memset(m, 0, sizeof *m);
+  snprintf(m->device, sizeof m->device, "%s", tap->radio);
+  m->up = all->serial.up;
+  m->stopping = link->stopping;
+  m->sent_frames = all->serial.sent;
+  m->dropped_frames = all->serial.dropped;
+  m->reopened = all->serial.reopened;
+  m->received_frames = link->decoder.ok;
+  m->bad_frames = link->decoder.bad;
+  m->command_age_us = link->command_age_us;
+  int64_t newest_us = 0;
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    const vs_radio_robot_state *r = &link->robot[i];
+    m->robot[i] = (vs_msg_radio_robot){.id = link->id[i],
+                                       .age_us = r->heard ? now_us - r->heard_us : -1,
+                                       .round_trip_us = r->round_trip_us,
+                                       .measured = {vs_radio_radps(r->last.left), vs_radio_radps(r->last.right)},
+                                       .battery_v = 1e-3 * r->last.battery_mv,
+                                       .uptime_s = 1e-3 * r->last.uptime_ms,
+                                       .rssi_dbm = r->last.rssi_dbm,
+                                       .rx_ok = r->last.rx_ok,
+                                       .rx_bad = r->last.rx_bad};
+    if (r->heard && r->heard_us > newest_us) newest_us = r->heard_us;
+  }
+  send(tap, VS_CH_RADIO, newest_us ? newest_us : now_us);
+}
+
+// From buckets of 5 % to powers of two.
+static void put_stage(const char *name, const vs_histogram *h, vs_msg_stage *to) {
+  memset(to, 0, sizeof *to);
+  snprintf(to->name, sizeof to->name, "%s", name);
+  to->count = (int64_t)h->count;
+  to->p50_us = vs_histogram_quantile_us(h, 0.5);
+  to->p99_us = vs_histogram_quantile_us(h, 0.99);
+  to->max_us = (double)h->max_us;
+  for (int k = 0; k < VS_HISTOGRAM_BUCKETS; k++) {
+    if (!h->bucket[k]) continue;
+    int power = k < 1 ? 0 : (int)log2(vs_histogram_bound_us(k) * 1.0247); // by the bucket's middle
+    if (power >= VS_STATS_BUCKETS) power = VS_STATS_BUCKETS - 1;
+    to->bucket[power] += (int32_t)h->bucket[k];
+  }
+}
+
+static void send_stats(vs_tap *tap, const vs_field_stats *all, const vs_histogram second[VS_STAGES], int64_t now_us) {
+  vs_msg_stats *m = &tap->message.as.stats;
+  *m = (vs_msg_stats){.frames = all->frames,
+                      .dropped_frames = all->dropped,
+                      .decisions = all->decisions,
+                      .missed_ticks = all->missed_ticks,
+                      .n_stages = VS_STAGES};
+  for (int i = 0; i < VS_STAGES; i++) put_stage(vs_stage_name((vs_stage)i), &second[i], &m->stage[i]);
+  send(tap, VS_CH_STATS, now_us - STATS_PERIOD_US);
+}
+
+void vs_tap_slow(vs_tap *tap, const vs_field_stats *all, const vs_radio_link *link, vs_histogram second[VS_STAGES]) {
+  int64_t now_us = vs_clock_monotonic_us();
+  if (tap->bus && now_us - tap->radio_us >= RADIO_PERIOD_US) {
+    tap->radio_us = now_us;
+    send_radio(tap, all, link, now_us);
+  }
+  if (now_us - tap->stats_us < STATS_PERIOD_US) return;
+  tap->stats_us = now_us;
+  if (tap->bus) send_stats(tap, all, second, now_us);
+  memset(second, 0, VS_STAGES * sizeof *second);
+}
