@@ -3,7 +3,9 @@
 #ifndef VSSS_RADIO_LINK_H
 #define VSSS_RADIO_LINK_H
 
+#include "vsss/bus.h"
 #include "vsss/radio_codec.h"
+#include "vsss/radio_serial.h"
 #include "vsss/status.h"
 #include "vsss/world.h"
 
@@ -49,6 +51,10 @@ size_t vs_radio_link_due(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RAD
 size_t vs_radio_link_stop(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RADIO_FRAME_MAX]);
 
 void vs_radio_link_receive(vs_radio_link *link, const uint8_t *bytes, size_t size, int64_t now_us);
+
+// What VSSS_RADIO says of link and device.
+void vs_radio_link_report(const vs_radio_link *link, const char *device, const vs_serial_stats *serial, int64_t now_us,
+                          vs_msg_radio *out);
 
 #ifdef __cplusplus
 }

@@ -15,7 +15,9 @@ static const command commands[] = {
     {"detect", cmd_detect, "find tags in a picture and print their corners"},
     {"field", cmd_field, "play on a real field: camera, policy, radio"},
     {"train", cmd_train, "learn by self-play; writes a policy as ONNX"},
+    {"bridge", cmd_bridge, "carry wheel commands from LCM to the radio, and telemetry back"},
     {"replay", cmd_replay, "show a log of lcm-logger as text or video, or send it again"},
+    {"spy", cmd_spy, "who says what on LCM, in a window or in the terminal"},
     {NULL, NULL, NULL},
 };
 

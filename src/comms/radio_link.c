@@ -1,6 +1,7 @@
 #include "vsss/radio_link.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 vs_status vs_radio_link_init(vs_radio_link *link, const uint8_t id[VS_TEAM_SIZE], vs_error *err) {
@@ -74,5 +75,32 @@ void vs_radio_link_receive(vs_radio_link *link, const uint8_t *bytes, size_t siz
     vs_radio_frame frame;
     if (vs_radio_decode(&link->decoder, bytes[i], &frame) && frame.type == VS_RADIO_TELEMETRY)
       heard(link, &frame.as.telemetry, now_us);
+  }
+}
+
+void vs_radio_link_report(const vs_radio_link *link, const char *device, const vs_serial_stats *serial, int64_t now_us,
+                          vs_msg_radio *out) {
+  memset(out, 0, sizeof *out);
+  snprintf(out->device, sizeof out->device, "%s", device);
+  out->up = serial->up;
+  out->stopping = link->stopping;
+  out->sent_frames = serial->sent;
+  out->dropped_frames = serial->dropped;
+  out->reopened = serial->reopened;
+  out->received_frames = link->decoder.ok;
+  out->bad_frames = link->decoder.bad;
+  out->command_age_us = link->command_age_us;
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    const vs_radio_robot_state *r = &link->robot[i];
+    vs_msg_radio_robot *to = &out->robot[i];
+    to->id = link->id[i];
+    to->age_us = r->heard ? now_us - r->heard_us : -1;
+    to->round_trip_us = r->round_trip_us;
+    to->measured = (vs_wheels){vs_radio_radps(r->last.left), vs_radio_radps(r->last.right)};
+    to->battery_v = r->last.battery_mv * 1e-3;
+    to->uptime_s = r->last.uptime_ms * 1e-3;
+    to->rssi_dbm = r->last.rssi_dbm;
+    to->rx_ok = r->last.rx_ok;
+    to->rx_bad = r->last.rx_bad;
   }
 }
