@@ -1,10 +1,10 @@
-// What a row of a behaviour table wants of a robot's command, and how a table becomes one test per row. Frame and units
-// of strategy_command.h.
+// What a row of a behaviour table wants of a robot's command. Frame and units of strategy_command.h.
 #ifndef VSSS_TESTS_POLICY_COMMANDS_H
 #define VSSS_TESTS_POLICY_COMMANDS_H
 
 #include "assert_near.h"
 #include "policy/strategy_command.h"
+#include "rows.h"
 
 typedef struct wanted {
   emc_kind kind;
@@ -38,19 +38,6 @@ static inline void assert_command(const emc_command *c, const wanted *w, vs_poin
   if (w->kind == EMC_ORIENTATION || w->kind == EMC_UVF) assert_near(c->angle_rad, w->angle_rad, 1e-12);
   if (w->kind == EMC_VECTOR)
     assert_near(c->angle_rad, w->at_target ? atan2(target.y - robot.y, target.x - robot.x) : w->angle_rad, 1e-12);
-}
-
-// Runs `run` once per row of an array of structs whose first member is the row's name.
-#define RUN_ROWS(group, rows, run) run_rows(group, rows, sizeof rows / sizeof *(rows), sizeof *(rows), run)
-
-static inline int run_rows(const char *group, const void *rows, size_t n, size_t size, CMUnitTestFunction run) {
-  struct CMUnitTest test[128];
-  assert_true(n <= sizeof test / sizeof *test);
-  for (size_t i = 0; i < n; i++) {
-    const char *row = (const char *)rows + i * size;
-    test[i] = (struct CMUnitTest){*(const char *const *)row, run, NULL, NULL, (void *)row};
-  }
-  return _cmocka_run_group_tests(group, test, n, NULL, NULL);
 }
 
 #endif
