@@ -1,6 +1,7 @@
 // Tests src/control/control.c: when a team decides, what it sees, and what is kept.
 #include "vsss/control.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -181,6 +182,38 @@ static void last_action_is_seen_in_the_next_observation(void **state) {
   vs_control_free(control);
 }
 
+// The policy's path: observed at its decisions only, and the action is what the network gives for exactly that stack.
+static void learned_player_acts_on_the_written_stack_at_10_hz(void **state) {
+  (void)state;
+  vs_player *player = NULL, *reference = NULL;
+  vs_control *control = NULL;
+  vs_error err = {0};
+  if (vs_player_open("onnx:build/untrained.onnx", &player, &err) != VS_OK && strstr(err.text, "no ONNX Runtime")) {
+    printf("note: 1 checks not run: this build has no ONNX Runtime\n");
+    return;
+  }
+  assert_non_null(player);
+  assert_ok(vs_player_open("onnx:build/untrained.onnx", &reference, err));
+  assert_ok(vs_control_new(player, &control, err));
+  assert_ok(vs_control_reset(control, 1, false, err));
+  float stack[VS_TEAM_SIZE * VS_OBS_SIZE], action[VS_TEAM_SIZE * VS_ACTION_SIZE];
+  vs_wheels wheels[VS_TEAM_SIZE], held[VS_TEAM_SIZE] = {{0, 0}};
+  for (int n = 0; n < 30; n++) {
+    bool decided = frame(control, VS_YELLOW, 0.01 * n, 1.0 / 30, wheels);
+    assert_int_equal(decided, n % 3 == 0);
+    assert_near(newest_ball_x_m(control, 0, 7), -0.01 * (n / 3 * 3), 1e-7);
+    if (decided) {
+      vs_observer_write(vs_control_observer(control), stack);
+      assert_ok(vs_player_act(reference, stack, VS_TEAM_SIZE, action, err));
+      assert_memory_equal(vs_control_action(control), action, sizeof action);
+      assert_ok(vs_action_to_wheels(action, held, err));
+    }
+    assert_memory_equal(wheels, held, sizeof held);
+  }
+  vs_player_close(reference);
+  vs_control_free(control);
+}
+
 static void command_that_is_no_number_fails_and_stops_the_wheels(void **state) {
   (void)state;
   vs_control *control = control_of("notes:30");
@@ -282,6 +315,7 @@ int main(void) {
       cmocka_unit_test(restart_decides_at_once_and_refills_the_stack),
       cmocka_unit_test(yellow_sees_itself_attack_plus_x_and_its_own_score_first),
       cmocka_unit_test(last_action_is_seen_in_the_next_observation),
+      cmocka_unit_test(learned_player_acts_on_the_written_stack_at_10_hz),
       cmocka_unit_test(command_that_is_no_number_fails_and_stops_the_wheels),
       cmocka_unit_test(rate_that_does_not_divide_the_cameras_is_refused),
       cmocka_unit_test(external_team_acts_and_observes),
