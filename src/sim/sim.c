@@ -73,6 +73,7 @@ void vs_sim_reset(vs_sim *sim, const vs_sim_params *params) {
   vs_randomize_apply(sim);
   sim->data->time = 0;
   sim->frame = 0;
+  memcpy(sim->data->qpos, sim->mj->qpos0, sizeof(double) * sim->mj->nq); // the wheels' angles, that placing leaves
   vs_sim_place(sim, &kick_off);
 }
 
