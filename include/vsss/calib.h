@@ -49,12 +49,19 @@ typedef struct vs_calib_point {
   double x_px, y_px;
   double x_m, y_m, z_m;
 } vs_calib_point;
+// Pairs from a text file, one a line: x_px y_px x_m y_m [z_m]; "#" begins a comment. VS_USAGE names the line.
+vs_status vs_calib_load_points(const char *path, vs_calib_point *out, int capacity, int *count, vs_error *err);
 // Error of a pair in mm on its plane: where the pixel maps to, against where it is.
 double vs_calib_error_mm(const vs_calib *calib, const vs_calib_point *point);
 
 // Extrinsics from >= 4 pairs, intrinsics as they are in calib; fills rotation, translation, points, rms_mm, worst_mm.
 // VS_FAIL: too few, on a line, or no pose explains them.
 vs_status vs_calib_solve_pose(vs_calib *calib, const vs_calib_point *points, int count, vs_error *err);
+
+// The same without a measured lens: no distortion, and the focal length that puts the lens height_m over the floor, as
+// a tape measure says (2 cm wrong there are 0.25 mm at 8 cm height, field.md 1.4). calib needs its size only.
+vs_status vs_calib_solve_from_height(vs_calib *calib, const vs_calib_point *points, int count, double height_m,
+                                     vs_error *err);
 
 // Intrinsics from pictures of a checkerboard, columns x rows inner corners, squares of square_m.
 typedef struct vs_calib_board vs_calib_board;

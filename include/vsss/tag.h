@@ -26,6 +26,10 @@ typedef struct vs_tag_pattern {
 vs_status vs_tag_pattern_of(const char *family, int id, vs_tag_pattern *out, vs_error *err);
 const char *vs_tag_families(void); // "tagStandard41h12 tag25h9 ..."
 
+// Writes tags on one A4 sheet in true size, with outline, name and a 100 mm bar to check the print by; the ending of
+// path chooses .pdf or .png (300 dots per inch, patterns only; needs OpenCV). VS_USAGE: more than fit a sheet.
+vs_status vs_tag_sheet(const char *path, const char *family, const int *ids, int count, double paper_m, vs_error *err);
+
 #ifdef __cplusplus
 }
 #endif

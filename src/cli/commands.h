@@ -2,6 +2,7 @@
 #ifndef VSSS_CLI_COMMANDS_H
 #define VSSS_CLI_COMMANDS_H
 
+int cmd_calibrate(int argc, char **argv);
 int cmd_detect(int argc, char **argv);
 int cmd_field(int argc, char **argv);
 int cmd_train(int argc, char **argv);

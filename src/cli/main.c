@@ -12,6 +12,7 @@ typedef struct command {
 } command;
 
 static const command commands[] = {
+    {"calibrate", cmd_calibrate, "make the file that turns pixels into metres; print tags"},
     {"detect", cmd_detect, "find tags in a picture and print their corners"},
     {"field", cmd_field, "play on a real field: camera, policy, radio"},
     {"train", cmd_train, "learn by self-play; writes a policy as ONNX"},

@@ -117,3 +117,40 @@ vs_status vs_calib_save(const char *path, const vs_calib *c, vs_error *err) {
   }
   return VS_OK;
 }
+
+static vs_status parse_point(const char *path, int line, const char *text, vs_calib_point *out, vs_error *err) {
+  double v[5] = {0};
+  int used = 0, n = 0;
+  for (; n < 5; n++) {
+    int step = 0;
+    if (sscanf(text + used, " %lf%n", &v[n], &step) != 1 || !isfinite(v[n])) break;
+    used += step;
+  }
+  if (n < 4 || text[used + (int)strspn(text + used, " \t\r\n")])
+    return vs_fail(err, VS_USAGE, "%s:%d: '%.*s': expected x_px y_px x_m y_m [z_m]", path, line,
+                   (int)strcspn(text, "\r\n"), text);
+  *out = (vs_calib_point){v[0], v[1], v[2], v[3], v[4]};
+  if (fabs(v[2]) > 3 || fabs(v[3]) > 3 || fabs(v[4]) > 1)
+    return vs_fail(err, VS_USAGE, "%s:%d: (%g, %g, %g) is far off the field: metres are expected", path, line, v[2],
+                   v[3], v[4]);
+  return VS_OK;
+}
+
+vs_status vs_calib_load_points(const char *path, vs_calib_point *out, int capacity, int *count, vs_error *err) {
+  *count = 0;
+  FILE *f = fopen(path, "r");
+  if (!f) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
+  char text[512];
+  vs_status s = VS_OK;
+  for (int line = 1; s == VS_OK && fgets(text, sizeof text, f); line++) {
+    text[strcspn(text, "#")] = '\0';
+    if (!text[strspn(text, " \t\r\n")]) continue;
+    if (*count == capacity)
+      s = vs_fail(err, VS_USAGE, "%s:%d: more than %d points", path, line, capacity);
+    else
+      s = parse_point(path, line, text, &out[*count], err);
+    *count += s == VS_OK;
+  }
+  fclose(f);
+  return s;
+}

@@ -63,6 +63,27 @@ vs_status vs_calib_solve_pose(vs_calib *calib, const vs_calib_point *points, int
   return VS_OK;
 }
 
+vs_status vs_calib_solve_from_height(vs_calib *calib, const vs_calib_point *points, int count, double height_m,
+                                     vs_error *err) {
+  vs_calib c = *calib;
+  c.cx_px = 0.5 * c.width, c.cy_px = 0.5 * c.height;
+  c.k1 = c.k2 = c.k3 = c.p1 = c.p2 = 0;
+  c.fx_px = c.fy_px = c.width;
+  // Seen from above, the height found is nearly proportional to the focal length assumed.
+  for (int round = 0; round < 20; round++) {
+    vs_status s = vs_calib_solve_pose(&c, points, count, err);
+    if (s != VS_OK) return s;
+    double lens[3];
+    vs_calib_lens(&c, lens);
+    if (fabs(lens[2] - height_m) < 1e-4) {
+      *calib = c;
+      return VS_OK;
+    }
+    c.fx_px = c.fy_px = c.fx_px * height_m / lens[2];
+  }
+  return vs_fail(err, VS_FAIL, "no focal length puts the lens %.2f m over the floor: is that its height?", height_m);
+}
+
 enum { MOST_PICTURES = 200 };
 
 struct vs_calib_board {

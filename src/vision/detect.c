@@ -12,7 +12,7 @@ enum { BALL = 1, ADVERSARY = 2 };
 
 vs_tag_def vs_tag_def_field(void) {
   return (vs_tag_def){.family = VS_TAG_FAMILY,
-                      .decimate = 1.0,
+                      .decimate = 2.0,
                       .sharpening = 0.25,
                       .min_white_black_diff = 40,
                       .bits_corrected = 1,
@@ -22,6 +22,7 @@ vs_tag_def vs_tag_def_field(void) {
 
 vs_tag_def vs_tag_def_photo(void) {
   vs_tag_def def = vs_tag_def_field();
+  def.decimate = 1.0;
   def.min_white_black_diff = 5;
   def.min_margin = 0.0;
   return def;
