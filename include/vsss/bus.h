@@ -128,7 +128,7 @@ typedef struct vs_message {
   vs_channel channel;
   int64_t utime_us;         // since the epoch; filled in by vs_bus_publish where 0
   int64_t utime_capture_us; // since the epoch: mid-exposure of the frame this comes from; 0: unknown
-  int32_t seq;
+  int32_t seq;              // of a world: that of the world, whatever stands here
   union {
     vs_msg_world world;
     vs_msg_cmd cmd;

@@ -48,11 +48,14 @@ void vs_player_save(const vs_player *player, void *state);
 void vs_player_restore(vs_player *player, const void *state);
 
 // A scheme that needs another module (lcm:), registered once at start, before any thread; a scheme that is known
-// already is left as it is. open gets the text after the colon (valid as long as the player) and returns an api and,
-// if it likes, other options for its init than what follows "?" (a static string or one that outlives the player).
-// state_size 0 in such an api says that it cannot be snapshotted.
-typedef vs_status (*vs_player_provider)(const char *rest, const vsss_player_api **api, const char **options,
-                                        vs_error *err);
+// already is left as it is. open gets the text after the colon (valid as long as the player) and fills out, which comes
+// zeroed. state_size 0 in its api says that it cannot be snapshotted; its state is then a zeroed block of 64 bytes.
+typedef struct vs_player_given {
+  const vsss_player_api *api;
+  const char *options;                       // for its init; NULL: what follows "?"; else it outlives the player
+  const char *(*failure)(const void *state); // may be NULL; why the last step failed, or NULL if it did not
+} vs_player_given;
+typedef vs_status (*vs_player_provider)(const char *rest, vs_player_given *out, vs_error *err);
 void vs_player_register(const char *scheme, const char *help, vs_player_provider open);
 
 // The known schemes, for --help: false where index is past the last. vs_player_schemes: "onnx: emc: ..." in one line.

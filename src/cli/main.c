@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "cli.h"
+#include "player_lcm.h"
 
 typedef struct command {
   const char *name;
@@ -29,6 +30,7 @@ static void print_commands(FILE *out) {
 }
 
 int main(int argc, char **argv) {
+  vs_player_register("lcm:", PLAYER_LCM_HELP, player_lcm_open);
   if (argc < 2) {
     print_commands(stderr);
     return VS_USAGE;

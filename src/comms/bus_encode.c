@@ -24,6 +24,7 @@ static int encode_world(const vs_message *m, uint8_t *out, int size) {
   const vs_world *w = &m->as.world.world;
   const vs_game *g = &m->as.world.game;
   vsss_world_t t = {STAMP(m)};
+  t.seq = (int32_t)w->seq;
   t.time_us = w->time_us;
   for (int team = 0; team < VS_TEAMS; team++)
     for (int i = 0; i < VS_TEAM_SIZE; i++) {

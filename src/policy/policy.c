@@ -14,7 +14,8 @@
 struct vs_player {
   char *uri, *rest; // rest: a copy of what follows the scheme, cut at "?"
   const char *options;
-  const vsss_player_api *api; // NULL: an observation player
+  const vsss_player_api *api;                // NULL: an observation player
+  const char *(*failure)(const void *state); // of a registered player, or NULL
   vs_obs_player *learned;
   vs_plugin *plugin;
   void *state; // api->state_size bytes
@@ -49,7 +50,12 @@ static vs_status open_onnx(vs_player *player, const scheme *s, vs_error *err) {
 }
 
 static vs_status open_provided(vs_player *player, const scheme *s, vs_error *err) {
-  return s->provider(player->uri + strlen(s->name), &player->api, &player->options, err);
+  vs_player_given given = {0};
+  vs_status status = s->provider(player->uri + strlen(s->name), &given, err);
+  player->api = given.api;
+  player->failure = given.failure;
+  if (given.options) player->options = given.options;
+  return status;
 }
 
 // The program's table. Rows after the built-in ones are registered once at start, before any thread.
@@ -195,6 +201,8 @@ vs_status vs_player_step(vs_player *player, const vs_world *view, const vs_game 
   } else {
     player->api->step(player->state, view, game, dt_s, out);
   }
+  const char *why = player->failure ? player->failure(player->state) : NULL;
+  if (why) return vs_fail(err, VS_FAIL, "%s: %s", player->uri, why);
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     vs_status status = check_speed(player, i, "left", &out[i].left_radps, err);
     if (status == VS_OK) status = check_speed(player, i, "right", &out[i].right_radps, err);

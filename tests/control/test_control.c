@@ -38,12 +38,11 @@ static vsss_player_api notes_api = {.version = VSSS_PLAYER_VERSION,
                                     .init = notes_init,
                                     .step = notes_step};
 
-static vs_status notes_open(const char *rest, const vsss_player_api **api, const char **options, vs_error *err) {
-  (void)options;
+static vs_status notes_open(const char *rest, vs_player_given *out, vs_error *err) {
   double rate = atof(rest);
   if (rate == 0) return vs_fail(err, VS_USAGE, "notes: needs a rate");
   notes_api.rate_hz = rate;
-  *api = &notes_api;
+  out->api = &notes_api;
   return VS_OK;
 }
 

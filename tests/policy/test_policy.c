@@ -117,10 +117,14 @@ static void given_step(void *state, const vs_world *world, const vs_game *game, 
 
 static const vsss_player_api given = {VSSS_PLAYER_VERSION, "given", 30, 0, given_init, given_step, NULL};
 
-static vs_status given_open(const char *rest, const vsss_player_api **api, const char **options, vs_error *err) {
-  (void)options;
+static const char *given_failure(const void *state) {
+  (void)state;
+  return given_radps == 1234 ? "went home" : NULL;
+}
+
+static vs_status given_open(const char *rest, vs_player_given *out, vs_error *err) {
   if (strncmp(rest, "here", 4) != 0) return vs_fail(err, VS_FAIL, "given:%s is nowhere", rest);
-  *api = &given;
+  *out = (vs_player_given){.api = &given, .failure = given_failure};
   return VS_OK;
 }
 
@@ -152,6 +156,9 @@ static void command_is_clamped_or_if_not_finite_refused_by_name(void **state) {
   vs_error err = {0};
   assert_int_equal(vs_player_step(player, &world, &game, 1.0 / 30, out, &err), VS_FAIL);
   assert_non_null(strstr(err.text, "given:here?a=1: robot 1, right wheel: nan"));
+  given_radps = 1234;
+  assert_int_equal(vs_player_step(player, &world, &game, 1.0 / 30, out, &err), VS_FAIL);
+  assert_string_equal(err.text, "given:here?a=1: went home");
   vs_player_close(player);
 }
 
