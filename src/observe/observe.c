@@ -22,13 +22,19 @@ typedef struct scene {
 
 static float unit(double value) { return (float)(value < -1.0 ? -1.0 : value > 1.0 ? 1.0 : value); }
 
-static bearing bearing_of(double from_x_m, double from_y_m, double to_x_m, double to_y_m) {
+static inline void bearing_of(double from_x_m, double from_y_m, double to_x_m, double to_y_m, bearing *out) {
   // + 0.0 turns -0 into +0: a ball at y = -0 lies at angle pi like one at y = 0, not at -pi.
   double dx = (to_x_m - from_x_m) + 0.0, dy = (to_y_m - from_y_m) + 0.0;
-  double distance = sqrt(dx * dx + dy * dy);
-  if (distance < 1e-9) return (bearing){0, 1, 0, 0}; // the same point: the direction +x, as atan2(0, 0) has it
-  double inverse = 1.0 / distance;
-  return (bearing){(float)(dy * inverse), (float)(dx * inverse), (float)(atan2(dy, dx) / VS_PI), (float)distance};
+  double square = dx * dx + dy * dy;
+  if (square < 1e-18) { // the same point: the direction +x, as atan2(0, 0) has it
+    *out = (bearing){0, 1, 0, 0};
+    return;
+  }
+  double distance = sqrt(square), inverse = 1.0 / distance;
+  out->sin = (float)(dy * inverse);
+  out->cos = (float)(dx * inverse);
+  out->angle = (float)(atan2(dy, dx) / VS_PI);
+  out->distance_m = (float)distance;
 }
 
 static bearing reversed(bearing b) {
@@ -40,8 +46,8 @@ static void scene_of(const vs_world *view, const int *order, scene *s) {
   const vs_ball *ball = &view->ball;
   s->ball_xy[0] = unit(ball->x_m / VS_OBS_SCALE_X_M);
   s->ball_xy[1] = unit(ball->y_m / VS_OBS_SCALE_Y_M);
-  s->goal_ball[0] = bearing_of(-VS_OBS_GOAL_X_M, 0, ball->x_m, ball->y_m);
-  s->goal_ball[1] = bearing_of(VS_OBS_GOAL_X_M, 0, ball->x_m, ball->y_m);
+  bearing_of(-VS_OBS_GOAL_X_M, 0, ball->x_m, ball->y_m, &s->goal_ball[0]);
+  bearing_of(VS_OBS_GOAL_X_M, 0, ball->x_m, ball->y_m, &s->goal_ball[1]);
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     const vs_pose *own = &view->robot[VS_OWN][i].pose;
     const vs_pose *adversary = &view->robot[VS_ADVERSARY][order ? order[i] : i].pose;
@@ -49,15 +55,15 @@ static void scene_of(const vs_world *view, const int *order, scene *s) {
     s->own_xy[i][1] = unit(own->y_m / VS_OBS_SCALE_Y_M);
     s->adversary_xy[i][0] = unit(adversary->x_m / VS_OBS_SCALE_X_M);
     s->adversary_xy[i][1] = unit(adversary->y_m / VS_OBS_SCALE_Y_M);
-    s->robot_ball[i] = bearing_of(own->x_m, own->y_m, ball->x_m, ball->y_m);
+    bearing_of(own->x_m, own->y_m, ball->x_m, ball->y_m, &s->robot_ball[i]);
     for (int j = i + 1; j < VS_TEAM_SIZE; j++) {
       const vs_pose *ally = &view->robot[VS_OWN][j].pose;
-      s->robot_robot[i][j] = bearing_of(own->x_m, own->y_m, ally->x_m, ally->y_m);
+      bearing_of(own->x_m, own->y_m, ally->x_m, ally->y_m, &s->robot_robot[i][j]);
       s->robot_robot[j][i] = reversed(s->robot_robot[i][j]);
     }
     for (int j = 0; j < VS_TEAM_SIZE; j++) {
       const vs_pose *other = &view->robot[VS_ADVERSARY][order ? order[j] : j].pose;
-      s->robot_adversary[i][j] = bearing_of(own->x_m, own->y_m, other->x_m, other->y_m);
+      bearing_of(own->x_m, own->y_m, other->x_m, other->y_m, &s->robot_adversary[i][j]);
     }
   }
 }
