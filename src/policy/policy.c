@@ -187,14 +187,15 @@ vs_status vs_player_reset(vs_player *player, uint64_t seed, vs_error *err) {
 
 static vs_status check_speed(const vs_player *player, int robot, const char *wheel, double *radps, vs_error *err) {
   if (!isfinite(*radps))
-    return vs_fail(err, VS_FAIL, "%s: robot %d, %s wheel: %g rad/s is no command", player->uri, robot, wheel, *radps);
+    return vs_fail(err, VS_FAIL, "player %s, robot %d, %s wheel: %g rad/s is no command", player->uri, robot, wheel,
+                   *radps);
   *radps = fmin(fmax(*radps, -VS_WHEEL_LIMIT_RADPS), VS_WHEEL_LIMIT_RADPS);
   return VS_OK;
 }
 
 vs_status vs_player_step(vs_player *player, const vs_world *view, const vs_game *game, double dt_s,
                          vs_wheels out[VS_TEAM_SIZE], vs_error *err) {
-  if (!player->api) return vs_fail(err, VS_FAIL, "%s: acts on observations, not on a world", player->uri);
+  if (!player->api) return vs_fail(err, VS_FAIL, "player %s acts on observations, not on a world", player->uri);
   if (player->plugin) {
     vs_status status = vs_plugin_step(player->plugin, player->state, view, game, dt_s, out, err);
     if (status != VS_OK) return status;
@@ -216,7 +217,7 @@ static vs_status act_team(vs_player *player, int first_row, const float *obs, fl
   if (status != VS_OK) return status;
   for (int i = 0; i < VS_TEAM_SIZE * VS_ACTION_SIZE; i++) {
     if (!isfinite(action[i]))
-      return vs_fail(err, VS_FAIL, "%s: row %d, %s wheel: action %g is no number", player->uri,
+      return vs_fail(err, VS_FAIL, "player %s, row %d, %s wheel: action %g is no number", player->uri,
                      first_row + i / VS_ACTION_SIZE, i % VS_ACTION_SIZE ? "right" : "left", (double)action[i]);
     action[i] = fminf(fmaxf(action[i], -1.0f), 1.0f);
   }
@@ -224,7 +225,7 @@ static vs_status act_team(vs_player *player, int first_row, const float *obs, fl
 }
 
 vs_status vs_player_act(vs_player *player, const float *obs, int rows, float *action, vs_error *err) {
-  if (player->api) return vs_fail(err, VS_FAIL, "%s: acts on a world, not on observations", player->uri);
+  if (player->api) return vs_fail(err, VS_FAIL, "player %s acts on a world, not on observations", player->uri);
   int whole = rows / VS_TEAM_SIZE * VS_TEAM_SIZE;
   for (int r = 0; r < whole; r += VS_TEAM_SIZE) {
     vs_status status = act_team(player, r, obs + (size_t)r * VS_OBS_SIZE, action + (size_t)r * VS_ACTION_SIZE, err);

@@ -12,7 +12,8 @@ static void set_wheels(emc22_robot *r, double linear_mps, double angular_radps) 
 // How much an obstacle turns the course: away from it, by weight over distance.
 static double turn_from(const emc22_robot *r, double course_rad, vs_point obstacle, double weight) {
   double side = vs_wrap_rad(course_rad - vs_point_angle(r->at, obstacle));
-  return (side >= 0.0 ? weight : -weight) / vs_point_distance(r->at, obstacle);
+  double distance = fmax(vs_point_distance(r->at, obstacle), 0.001); // where two measured poses coincide
+  return (side >= 0.0 ? weight : -weight) / distance;
 }
 
 static double avoid(const emc22_state *s, int robot, double course_rad) {

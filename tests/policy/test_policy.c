@@ -1,7 +1,9 @@
 // src/policy/policy.c
 #include "assert_near.h"
 #include "vsss/field.h"
+#include "vsss/geom.h"
 #include "vsss/policy.h"
+#include "vsss/rng.h"
 
 #include <string.h>
 
@@ -155,11 +157,82 @@ static void command_is_clamped_or_if_not_finite_refused_by_name(void **state) {
   given_radps = NAN;
   vs_error err = {0};
   assert_int_equal(vs_player_step(player, &world, &game, 1.0 / 30, out, &err), VS_FAIL);
-  assert_non_null(strstr(err.text, "given:here?a=1: robot 1, right wheel: nan"));
+  assert_non_null(strstr(err.text, "player given:here?a=1, robot 1, right wheel: nan"));
   given_radps = 1234;
   assert_int_equal(vs_player_step(player, &world, &game, 1.0 / 30, out, &err), VS_FAIL);
   assert_string_equal(err.text, "given:here?a=1: went home");
   vs_player_close(player);
+}
+
+// Coordinates on a coarse grid, so that robots, ball and lines of the strategies often coincide exactly.
+static double coarse(vs_rng *rng, double half_m) { return half_m * ((int)vs_rng_below(rng, 21) - 10) / 10.0; }
+
+static vs_pose coarse_pose(vs_rng *rng) {
+  return (vs_pose){coarse(rng, 0.85), coarse(rng, 0.65), VS_PI * ((int)vs_rng_below(rng, 17) - 8) / 8.0};
+}
+
+static void assert_always_finite(const char *uri) {
+  vs_player *player = opened(uri);
+  vs_rng rng = vs_rng_make(11, 0);
+  vs_game game = {0};
+  for (int k = 0; k < 20000; k++) {
+    vs_world world = {0};
+    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+      world.robot[VS_OWN][i].pose = coarse_pose(&rng);
+      world.robot[VS_ADVERSARY][i] = (vs_robot){.pose = coarse_pose(&rng), .valid = true};
+    }
+    world.ball = (vs_ball){.x_m = coarse(&rng, 0.85), .y_m = coarse(&rng, 0.65)};
+    if (k % 3 == 0) world.ball.vx_mps = coarse(&rng, 1), world.ball.vy_mps = coarse(&rng, 1);
+    if (k % 50 == 0)
+      game.last_event = (vs_event){(vs_event_kind)vs_rng_below(&rng, VS_EVENT_KINDS), (vs_team)(k / 50 % 2), 0, k};
+    vs_wheels out[VS_TEAM_SIZE];
+    assert_ok(vs_player_step(player, &world, &game, k % 7 ? 1.0 / 30 : 0.0, out, err));
+  }
+  vs_player_close(player);
+}
+
+static void scripted_players_give_numbers_in_any_world(void **state) {
+  (void)state;
+  assert_always_finite("emc:");
+  assert_always_finite("emc:?pid=1");
+  assert_always_finite("inf:");
+  assert_always_finite("emc22:");
+}
+
+static void scripted_players_refuse_options_they_do_not_know(void **state) {
+  (void)state;
+  assert_refused("emc:?pdi=1", VS_USAGE, "emc: has no option 'pdi=1'; it knows: pid");
+  assert_refused("emc:?pid=maybe", VS_USAGE, "pid = maybe");
+  assert_refused("inf:?pid=1", VS_USAGE, "inf: takes no options");
+  assert_refused("emc22:?pid=1", VS_USAGE, "emc22: takes no options");
+}
+
+// Every player's snapshot carries on as the player does.
+static void restored_players_repeat_their_commands(void **state) {
+  (void)state;
+  static const char *const uris[] = {"emc:?pid=1", "inf:", "emc22:", "random:"};
+  for (size_t u = 0; u < sizeof uris / sizeof *uris; u++) {
+    vs_player *player = opened(uris[u]), *other = opened(uris[u]);
+    vs_rng rng = vs_rng_make(u, 0);
+    vs_game game = {0};
+    static unsigned char saved[4096];
+    assert_true(vs_player_state_size(player) <= sizeof saved);
+    for (int k = 0; k < 200; k++) {
+      vs_world world = {.ball = {.x_m = coarse(&rng, 0.7), .y_m = coarse(&rng, 0.6)}};
+      for (int i = 0; i < VS_TEAM_SIZE; i++) world.robot[VS_OWN][i].pose = coarse_pose(&rng);
+      vs_wheels a[VS_TEAM_SIZE], b[VS_TEAM_SIZE];
+      if (k == 100) {
+        vs_player_save(player, saved);
+        vs_player_restore(other, saved);
+      }
+      assert_ok(vs_player_step(player, &world, &game, 1.0 / 30, a, err));
+      if (k < 100) continue;
+      assert_ok(vs_player_step(other, &world, &game, 1.0 / 30, b, err));
+      assert_memory_equal(a, b, sizeof a);
+    }
+    vs_player_close(player);
+    vs_player_close(other);
+  }
 }
 
 static void every_listed_scheme_has_a_help_line(void **state) {
@@ -167,7 +240,7 @@ static void every_listed_scheme_has_a_help_line(void **state) {
   const char *name, *help;
   int n = 0;
   for (; vs_player_scheme(n, &name, &help); n++) assert_true(strchr(name, ':') && *help);
-  assert_true(n >= 4);
+  assert_true(n >= 7);
   assert_false(vs_player_scheme(-1, &name, &help));
 }
 
@@ -181,6 +254,9 @@ int main(void) {
       cmocka_unit_test(restored_random_player_repeats_its_commands),
       cmocka_unit_test(registered_scheme_opens_with_its_rest_and_options),
       cmocka_unit_test(command_is_clamped_or_if_not_finite_refused_by_name),
+      cmocka_unit_test(scripted_players_give_numbers_in_any_world),
+      cmocka_unit_test(scripted_players_refuse_options_they_do_not_know),
+      cmocka_unit_test(restored_players_repeat_their_commands),
       cmocka_unit_test(every_listed_scheme_has_a_help_line),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
