@@ -143,6 +143,9 @@ typedef struct vs_message {
 
 typedef struct vs_bus vs_bus;
 
+// VS_FAIL where the program was built without LCM: says what to install.
+vs_status vs_bus_supported(vs_error *err);
+
 // The URL that vs_bus_open(NULL) takes: LCM_DEFAULT_URL of the environment, else VS_BUS_DEFAULT_URL.
 const char *vs_bus_default_url(void);
 

@@ -1,5 +1,5 @@
-// Reads what lcm-logger wrote. Our own reader of that simple format, so that a cut or damaged file is an error with
-// the place where it is damaged, and so that it also works where LCM is not installed.
+// Reads what lcm-logger wrote. Our own reader of that simple format, because LCM's takes a cut or damaged file for one
+// that ends there; here it is an error with the byte where the damage is.
 #ifndef VSSS_BUS_LOG_H
 #define VSSS_BUS_LOG_H
 

@@ -65,6 +65,7 @@ int cmd_replay(int argc, char **argv) {
   if (s == VS_OK && words.count != 1)
     s = vs_fail(&err, VS_USAGE, "expected one log file, such as 'vsss replay lcmlog-2026-11-22.00'");
   vs_bus_log *log = NULL;
+  if (s == VS_OK) s = vs_bus_supported(&err);
   if (s == VS_OK) s = vs_bus_log_open(words.value[0], &log, &err);
   if (s != VS_OK) return vs_cli_error("replay", &err);
 

@@ -19,7 +19,7 @@ typedef struct replay_summary {
   int n_channels;
   replay_channel channel[REPLAY_CHANNELS_MAX];
   bool have_game, have_truth, have_state;
-  bool found_wanted; // a message of a channel that was asked for
+  bool found_wanted;                  // a message of a channel that was asked for
   int matches;                        // ends seen
   vs_game game;                       // the last known
   char player[VS_TEAMS][VS_BUS_TEXT]; // last source of each team's commands, "" where there was none

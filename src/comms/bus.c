@@ -32,6 +32,11 @@ struct vs_bus {
   uint8_t image[VS_BUS_IMAGE_MAX];
 };
 
+vs_status vs_bus_supported(vs_error *err) {
+  (void)err;
+  return VS_OK;
+}
+
 vs_status vs_bus_open(const char *url, vs_bus **out, vs_error *err) {
   *out = NULL;
   if (!url) url = vs_bus_default_url();

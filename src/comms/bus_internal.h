@@ -4,7 +4,7 @@
 
 #include "vsss/bus.h"
 
-// Checks url before LCM sees it, because LCM prints on stderr what it does not like. VS_USAGE: wrong; VS_FAIL: no
+// Checks url before LCM sees it, because LCM prints by itself what it does not like. VS_USAGE: wrong; VS_FAIL: no
 // multicast route to its address.
 vs_status vs_bus_url_check(const char *url, vs_error *err);
 

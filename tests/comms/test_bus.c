@@ -85,12 +85,8 @@ static void fill(vs_channel channel, vs_message *m) {
 static uint8_t image_buffer[VS_BUS_IMAGE_MAX];
 
 static bool no_lcm(void) {
-  vs_bus *bus;
   vs_error err = {0};
-  if (vs_bus_open("memq://", &bus, &err) == VS_OK) {
-    vs_bus_close(bus);
-    return false;
-  }
+  if (vs_bus_supported(&err) == VS_OK) return false;
   printf("note: 1 check not run: %s\n", err.text);
   return true;
 }
@@ -261,9 +257,8 @@ static void oversized_image_is_not_published(void **state) {
 
 static void wrong_urls_are_usage_errors_that_show_a_right_one(void **state) {
   (void)state;
-  if (no_lcm()) return;
   const char *const wrong[] = {"",
-                               "http://x",
+                               "tcpq://x",
                                "udpm://",
                                "udpm://10.0.0.1:7667",
                                "udpm://239.255.76.67",
