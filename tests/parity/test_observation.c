@@ -93,7 +93,7 @@ static void field_and_simulator_observe_the_same_match_alike(void **state) {
       vs_control_observe(sim, def.team, &truth, &game);
       vs_control_observe(field, def.team, &tracked, &game);
       // The first sight is exact; then the filters follow curves by a millimetre and a degree.
-      compare(sim, field, n == 0 ? 1e-5 : 0.02, n);
+      compare(sim, field, n == 0 ? 1e-5 : 0.005, n);
     }
     vs_control_free(sim);
     vs_control_free(field);
