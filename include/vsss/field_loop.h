@@ -10,6 +10,7 @@
 #include "vsss/histogram.h"
 #include "vsss/radio_link.h"
 #include "vsss/radio_serial.h"
+#include "vsss/safety.h"
 #include "vsss/track.h"
 #include "vsss/world.h"
 
@@ -70,9 +71,10 @@ typedef struct vs_field_stats {
 
 // What one frame came to.
 typedef struct vs_field_tick_result {
-  vs_camera_got got;  // the rest is valid for VS_CAMERA_FRAME only
-  vs_world world;     // tracked, at the frame's capture time
-  bool decided, stop; // stop: halted by the referee, or safety holds the robots
+  vs_camera_got got;      // the rest is valid for VS_CAMERA_FRAME only
+  vs_world world;         // tracked, at the frame's capture time
+  bool decided, stop;     // stop: safety holds the robots
+  vs_safety_state safety; // and why
   vs_wheels wheels[VS_TEAM_SIZE];
   int64_t age_us; // of the frame when the bytes were written
 } vs_field_tick_result;

@@ -125,9 +125,9 @@ static void show_progress(vs_progress *progress, const vs_field_def *def, double
                           const vs_field_tick_result *tick) {
   vs_team other = def->team == VS_BLUE ? VS_YELLOW : VS_BLUE;
   char text[120];
-  snprintf(text, sizeof text, "sees own %d, other %d, ball %d  camera to radio %5.1f ms%s",
+  snprintf(text, sizeof text, "sees own %d, other %d, ball %d  camera to radio %5.1f ms%s%s",
            valid_robots(&tick->world, def->team), valid_robots(&tick->world, other), tick->world.ball.valid,
-           1e-3 * (double)tick->age_us, tick->stop ? "  STOP" : "");
+           1e-3 * (double)tick->age_us, tick->stop ? "  STOP: " : "", tick->stop ? vs_safety_name(tick->safety) : "");
   vs_progress_show(progress, share, text);
 }
 

@@ -22,7 +22,7 @@ struct vs_field {
   vs_sender *sender;
   vs_tap tap;
   vs_game game; // absolute frame
-  bool halted;  // by a referee
+  vs_safety safety;
   int64_t start_us, last_capture_us, last_decision_us;
   uint32_t last_seq;
   vs_detections seen;
@@ -106,6 +106,7 @@ vs_status vs_field_new(const vs_field_def *def, vs_field **out, char *note, size
   if (!f) return vs_fail(err, VS_FAIL, "out of memory");
   f->def = *def;
   f->game.duration_s = def->duration_s;
+  vs_safety_init(&f->safety, vs_clock_monotonic_us());
   vs_status s = open_brain(f, err);
   if (s == VS_OK) s = vs_sender_new(def->radio, def->baud, def->radio_id, &f->sender, err);
   if (s == VS_OK) s = open_eyes(f, note, note_size, err);
@@ -145,7 +146,6 @@ static void hear_referee(vs_field *f, int64_t now_us) {
   if (vs_tap_listen(&f->tap)) {
     const vs_msg_referee *said = &f->tap.heard;
     f->stats.events++;
-    f->halted = said->event.kind == VS_EVENT_HALT || said->event.kind == VS_EVENT_END;
     f->game.last_event = said->event;
     f->game.duration_s = said->duration_s;
     memcpy(f->game.score, said->score, sizeof f->game.score);
@@ -171,6 +171,19 @@ static void count_decision(vs_field *f, int64_t capture_us) {
   if (periods > 1.5) f->stats.missed_ticks += llround(periods) - 1;
   f->last_decision_us = capture_us;
   f->stats.decisions++;
+}
+
+// The last word before the radio.
+static void judge(vs_field *f, int64_t capture_us, vs_field_tick_result *r) {
+  vs_safety_input in = {.now_us = vs_clock_monotonic_us(),
+                        .armed = true, // by having started the program
+                        .referee = f->game.last_event.kind,
+                        .team = f->def.team,
+                        .world = &r->world,
+                        .command_us = capture_us};
+  memcpy(in.wheels, r->wheels, sizeof in.wheels);
+  r->safety = vs_safety_step(&f->safety, &in, r->wheels);
+  r->stop = r->safety != VS_SAFETY_RUNNING;
 }
 
 vs_status vs_field_tick(vs_field *f, vs_field_tick_result *r, vs_error *err) {
@@ -201,7 +214,7 @@ vs_status vs_field_tick(vs_field *f, vs_field_tick_result *r, vs_error *err) {
   if (s != VS_OK) return s;
   mark(f, VS_STAGE_CONTROL);
 
-  r->stop = f->halted;
+  judge(f, frame.capture_us, r);
   vs_sender_command(f->sender, r->wheels, r->stop, frame.capture_us, r->decided);
   mark(f, VS_STAGE_WRITE);
   r->age_us = f->mark_us - frame.capture_us;
