@@ -225,7 +225,8 @@ vs_status vs_field_tick(vs_field *f, vs_field_tick_result *r, vs_error *err) {
   }
 
   vs_tap_frame(&f->tap, &r->world, &f->game, &f->seen, frame.width, frame.height);
-  if (r->decided) vs_tap_decision(&f->tap, f->control, &r->world, r->wheels, r->stop);
+  vs_tap_command(&f->tap, &r->world, r->wheels, r->stop);
+  if (r->decided) vs_tap_decision(&f->tap, f->control, &r->world);
   vs_radio_link link;
   vs_sender_state(f->sender, &link, &f->stats.serial);
   vs_tap_slow(&f->tap, &f->stats, &link, f->second);

@@ -102,8 +102,7 @@ void vs_tap_frame(vs_tap *tap, const vs_world *world, const vs_game *game, const
   send(tap, VS_CH_DETECTIONS, seen->capture_us);
 }
 
-void vs_tap_decision(vs_tap *tap, const vs_control *control, const vs_world *world,
-                     const vs_wheels wheels[VS_TEAM_SIZE], bool stop) {
+void vs_tap_command(vs_tap *tap, const vs_world *world, const vs_wheels wheels[VS_TEAM_SIZE], bool stop) {
   if (!tap->bus) return;
   vs_msg_cmd *cmd = &tap->message.as.cmd;
   cmd->team = tap->team;
@@ -112,7 +111,10 @@ void vs_tap_decision(vs_tap *tap, const vs_control *control, const vs_world *wor
   cmd->state_seq = world->seq;
   snprintf(cmd->source, sizeof cmd->source, "%s", tap->policy);
   send(tap, VS_CH_CMD, world->time_us);
+}
 
+void vs_tap_decision(vs_tap *tap, const vs_control *control, const vs_world *world) {
+  if (!tap->bus) return;
   vs_msg_policy *m = &tap->message.as.policy;
   m->team = tap->team;
   m->contract_hash = vs_contract_hash();
@@ -123,31 +125,10 @@ void vs_tap_decision(vs_tap *tap, const vs_control *control, const vs_world *wor
 }
 
 static void send_radio(vs_tap *tap, const vs_field_stats *all, const vs_radio_link *link, int64_t now_us) {
-  vs_msg_radio *m = &tap->message.as.radio;
-  memset(m, 0, sizeof *m);
-  snprintf(m->device, sizeof m->device, "%s", tap->radio);
-  m->up = all->serial.up;
-  m->stopping = link->stopping;
-  m->sent_frames = all->serial.sent;
-  m->dropped_frames = all->serial.dropped;
-  m->reopened = all->serial.reopened;
-  m->received_frames = link->decoder.ok;
-  m->bad_frames = link->decoder.bad;
-  m->command_age_us = link->command_age_us;
+  vs_radio_link_report(link, tap->radio, &all->serial, now_us, &tap->message.as.radio);
   int64_t newest_us = 0;
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
-    const vs_radio_robot_state *r = &link->robot[i];
-    m->robot[i] = (vs_msg_radio_robot){.id = link->id[i],
-                                       .age_us = r->heard ? now_us - r->heard_us : -1,
-                                       .round_trip_us = r->round_trip_us,
-                                       .measured = {vs_radio_radps(r->last.left), vs_radio_radps(r->last.right)},
-                                       .battery_v = 1e-3 * r->last.battery_mv,
-                                       .uptime_s = 1e-3 * r->last.uptime_ms,
-                                       .rssi_dbm = r->last.rssi_dbm,
-                                       .rx_ok = r->last.rx_ok,
-                                       .rx_bad = r->last.rx_bad};
-    if (r->heard && r->heard_us > newest_us) newest_us = r->heard_us;
-  }
+  for (int i = 0; i < VS_TEAM_SIZE; i++)
+    if (link->robot[i].heard && link->robot[i].heard_us > newest_us) newest_us = link->robot[i].heard_us;
   send(tap, VS_CH_RADIO, newest_us ? newest_us : now_us);
 }
 

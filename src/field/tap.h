@@ -32,8 +32,9 @@ bool vs_tap_listen(vs_tap *tap);
 
 void vs_tap_frame(vs_tap *tap, const vs_world *world, const vs_game *game, const vs_detections *seen, int width_px,
                   int height_px);
-void vs_tap_decision(vs_tap *tap, const vs_control *control, const vs_world *world,
-                     const vs_wheels wheels[VS_TEAM_SIZE], bool stop);
+// Every frame, decided or not: a bridge on another computer counts a command's age from its frame, as our sender does.
+void vs_tap_command(vs_tap *tap, const vs_world *world, const vs_wheels wheels[VS_TEAM_SIZE], bool stop);
+void vs_tap_decision(vs_tap *tap, const vs_control *control, const vs_world *world);
 // The slow channels, when their time has come: radio 5 times, statistics once a second. second: this second's stages,
 // emptied after they went out.
 void vs_tap_slow(vs_tap *tap, const vs_field_stats *all, const vs_radio_link *link, vs_histogram second[VS_STAGES]);
