@@ -149,6 +149,21 @@ static void reading_notices_a_device_that_went_away(void **state) {
   assert_false(vs_serial_get_stats(serial).up);
 }
 
+static void the_robots_end_survives_a_pc_that_closes_and_comes_back(void **state) {
+  (void)state;
+  const uint8_t bytes[] = {9, 8, 7, 0};
+  uint8_t back[4];
+  vs_serial_close(serial);
+  // Nobody has the PC's end open: the kernel answers EIO, which is no byte and no failure.
+  assert_int_equal(read(vs_pty_fd(pty), back, 4), -1);
+  assert_int_equal(errno, EIO);
+  assert_int_equal(vs_pty_read(pty, back, 4), 0);
+  assert_ok(vs_serial_open(vs_pty_path(pty), VS_SERIAL_BAUD, &serial, err));
+  assert_true(vs_serial_write(serial, bytes, sizeof bytes, 1));
+  assert_int_equal(read_all(back, 4), 4);
+  assert_memory_equal(back, bytes, 4);
+}
+
 static void a_second_program_is_kept_out(void **state) {
   (void)state;
   vs_serial *other;
@@ -189,6 +204,7 @@ int main(void) {
       WITH_PTY(a_full_buffer_drops_whole_frames_and_counts_them),
       WITH_PTY(a_device_that_goes_away_is_found_again),
       WITH_PTY(reading_notices_a_device_that_went_away),
+      WITH_PTY(the_robots_end_survives_a_pc_that_closes_and_comes_back),
       WITH_PTY(a_second_program_is_kept_out),
       WITH_PTY(wrong_devices_are_named),
       WITH_PTY(drain_returns_when_the_reader_took_all),
