@@ -21,7 +21,7 @@
 #define VS_BALL_MASS_KG  0.046
 
 #define VS_ROBOT_SIZE_M      0.08
-#define VS_ROBOT_HEIGHT_M    0.08 // top of the cap over the floor
+#define VS_ROBOT_HEIGHT_M    0.08  // top of the cap over the floor
 #define VS_ROBOT_MASS_KG     0.425 // block 396 g, four slabs and the cap 1 g each, two wheels 12 g each
 #define VS_WHEEL_RADIUS_M    0.03
 #define VS_WHEEL_WIDTH_M     0.006
