@@ -58,18 +58,27 @@ static void boolean(json *j, const char *key, bool value) {
   raw(j, value ? "true" : "false");
 }
 
-static void string(json *j, const char *key, const char *value) {
-  name(j, key);
+static void quote(json *j, const char *text) {
   raw(j, "\"");
-  for (const unsigned char *c = (const unsigned char *)value; *c; c++) {
+  for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
     if (*c == '"' || *c == '\\')
       raw(j, "\\%c", *c);
-    else if (*c < 0x20 || *c >= 0x7F)
+    else if (*c < 0x20 || *c == 0x7F)
       raw(j, "\\u%04x", *c);
     else
       raw(j, "%c", *c);
   }
   raw(j, "\"");
+}
+
+void vs_json_quote(const char *text, char *out, size_t size) {
+  json j = {out, size, true};
+  quote(&j, text);
+}
+
+static void string(json *j, const char *key, const char *value) {
+  name(j, key);
+  quote(j, value);
 }
 
 static void pair(json *j, const char *key, double a, double b) {

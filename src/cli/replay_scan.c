@@ -78,6 +78,15 @@ static void print_message(const vs_message *m, double time_s, bool json, bool wh
   }
 }
 
+static void print_foreign(const vs_log_event *event, double time_s, bool json) {
+  char name[512];
+  vs_json_quote(event->channel, name, sizeof name);
+  if (json)
+    printf("{\"t_s\": %.6f, \"channel\": %s, \"size\": %zu}\n", time_s, name, event->size);
+  else
+    printf("%9.3f  %-15s  %zu bytes\n", time_s, event->channel, event->size);
+}
+
 vs_status replay_scan(vs_bus_log *log, const replay_def *def, replay_summary *out, vs_error *err) {
   memset(out, 0, sizeof *out);
   vs_message *message = malloc(sizeof *message);
@@ -104,9 +113,7 @@ vs_status replay_scan(vs_bus_log *log, const replay_def *def, replay_summary *ou
     if (ours) learn(out, message);
     bool show = def->show && (chosen ? wanted : ours && channel == VS_CH_REFEREE);
     if (show && ours) print_message(message, time_s, def->json, chosen);
-    if (show && !ours && def->json)
-      printf("{\"t_s\": %.6f, \"channel\": \"%s\", \"size\": %zu}\n", time_s, event.channel, event.size);
-    if (show && !ours && !def->json) printf("%9.3f  %-15s  %zu bytes\n", time_s, event.channel, event.size);
+    if (show && !ours) print_foreign(&event, time_s, def->json);
   }
   free(message);
   free(image);
@@ -114,18 +121,20 @@ vs_status replay_scan(vs_bus_log *log, const replay_def *def, replay_summary *ou
 }
 
 static void print_json(const char *path, const replay_summary *s) {
-  printf("{\"summary\": {\"log\": \"");
-  for (const char *c = path; *c; c++) printf(*c == '"' || *c == '\\' ? "\\%c" : "%c", *c);
-  printf("\", \"messages\": %lld, \"bytes\": %lld, \"seconds\": %.6f, \"matches\": %d, ", (long long)s->events,
-         (long long)s->bytes, (double)(s->last_us - s->first_us) * 1e-6, s->matches);
+  char text[1024];
+  vs_json_quote(path, text, sizeof text);
+  printf("{\"summary\": {\"log\": %s, \"messages\": %lld, \"bytes\": %lld, \"seconds\": %.6f, \"matches\": %d, ", text,
+         (long long)s->events, (long long)s->bytes, (double)(s->last_us - s->first_us) * 1e-6, s->matches);
   if (s->have_game)
     printf("\"score\": [%d, %d], \"game_time_s\": %.3f, ", s->game.score[VS_BLUE], s->game.score[VS_YELLOW],
            s->game.time_s);
   printf("\"channels\": [");
-  for (int i = 0; i < s->n_channels; i++)
-    printf("%s{\"name\": \"%s\", \"messages\": %lld, \"bytes\": %lld, \"refused\": %lld}", i ? ", " : "",
-           s->channel[i].name, (long long)s->channel[i].messages, (long long)s->channel[i].bytes,
-           (long long)s->channel[i].refused);
+  for (int i = 0; i < s->n_channels; i++) {
+    const replay_channel *c = &s->channel[i];
+    vs_json_quote(c->name, text, sizeof text);
+    printf("%s{\"name\": %s, \"messages\": %lld, \"bytes\": %lld, \"refused\": %lld}", i ? ", " : "", text,
+           (long long)c->messages, (long long)c->bytes, (long long)c->refused);
+  }
   printf("]}}\n");
 }
 

@@ -104,6 +104,9 @@ static void json_is_one_object_per_line(void **state) {
   vsss(&run, call("--json --channel VSSS_CMD --channel truth"));
   assert_int_equal(run.status, 0);
   int lines = 0;
+  char summary[256];
+  snprintf(summary, sizeof summary, "{\"summary\": {\"log\": \"%s\", \"messages\": 38, ", path);
+  assert_non_null(strstr(run.out, summary));
   for (char *line = strtok(run.out, "\n"); line; line = strtok(NULL, "\n")) {
     assert_int_equal(line[0], '{');
     assert_int_equal(line[strlen(line) - 1], '}');
