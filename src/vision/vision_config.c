@@ -1,4 +1,5 @@
 // The [vision] section of the field's configuration.
+#include <stdio.h>
 #include <string.h>
 
 #include "vsss/track.h"
@@ -42,8 +43,9 @@ int vs_vision_schema(vs_detector_def *d, vs_track_def *t, vs_camera_def *c, char
   whole(&r, "vision.height_px", &c->height, 0, 8192, "asked of the camera");
   number(&r, "vision.fps", &c->fps, 0, 1000, "asked of the camera; 0: 60");
   number(&r, "vision.exposure_ms", &c->exposure_ms, 0, 1000, "above 5 ms tags blur; 0: left alone");
-  strncpy(family, d->tag.family, 31);
-  family[31] = '\0';
+  char name[32]; // by way of a copy: the family may already point to this buffer
+  snprintf(name, sizeof name, "%s", d->tag.family);
+  memcpy(family, name, sizeof name);
   d->tag.family = family;
   row(&r, (vs_config_key){"vision.tag_family", VS_CONFIG_TEXT, family, 32, 0, 0, "of libapriltag"});
   for (int i = 0; i < VS_TEAM_SIZE; i++) {

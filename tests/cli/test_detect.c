@@ -81,6 +81,7 @@ static void bad_requests_are_one_line_with_the_fix(void **state) {
   (void)state;
   assert_refused("detect", 2, "give one picture");
   assert_refused("detect /nowhere/a.png", 1, "/nowhere/a.png");
+  assert_refused("detect /dev/null", 1, "/dev/null");
   assert_refused("detect x:y", 2, "unknown camera 'x:y'");
   assert_refused(in_folder("detect %s/field.png --family tag99"), 2, "tagStandard41h12");
   assert_refused(in_folder("detect %s/field.png --decimate 0"), 2, "allowed are 1 to 8");
