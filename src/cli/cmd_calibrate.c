@@ -95,13 +95,13 @@ static vs_status snapshot(const request *r, vs_error *err) {
 static vs_status collect_boards(const request *r, vs_camera *camera, vs_calib_board *board, int *seen, vs_error *err) {
   vs_camera_got got = VS_CAMERA_FRAME;
   vs_frame frame;
+  bool device = !strncmp(r->camera, "/dev/", 5);
   vs_cli_catch_interrupts();
   for (int64_t last_us = 0; *seen < r->pictures && got != VS_CAMERA_END && !vs_cli_interrupted();) {
     vs_status s = vs_camera_read(camera, 2000, &frame, &got, err);
     if (s != VS_OK) return s;
-    // From a video or a device two pictures a second are different enough.
-    bool picture = vs_camera_about(camera)->fps <= 30 && frame.capture_us - last_us < 500000 && last_us;
-    if (got != VS_CAMERA_FRAME || (picture && strncmp(r->camera, "/dev/", 5) == 0)) continue;
+    // From a device two views a second: in between the board has hardly moved.
+    if (got != VS_CAMERA_FRAME || (device && last_us && frame.capture_us - last_us < 500000)) continue;
     bool found;
     s = vs_calib_board_add(board, frame.grey, frame.grey_stride, frame.width, frame.height, &found, err);
     if (s != VS_OK) return s;

@@ -1,8 +1,10 @@
 // src/cli/cmd_calibrate.c and src/vision/tag_sheet.c, through the real binary
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "assert_near.h"
 #include "run_vsss.h"
+#include "vision/board.h"
 #include "vision/scene.h"
 #include "vsss/calib.h"
 
@@ -128,6 +130,36 @@ static void printed_tags_are_read_back_at_true_size(void **state) {
   assert_string_equal(head, "%PDF-1.4");
 }
 
+static void a_folder_of_checkerboard_pictures_gives_the_lens(void **state) {
+  (void)state;
+  static unsigned char grey[BOARD_WIDTH * BOARD_HEIGHT], bgr[3 * BOARD_WIDTH * BOARD_HEIGHT];
+  char path[128];
+  assert_int_equal(mkdir(in_folder("%s/boards"), 0700), 0);
+  for (int pose = 0; pose < 6; pose++) {
+    board_draw(pose, grey);
+    for (int i = 0; i < 3 * BOARD_WIDTH * BOARD_HEIGHT; i++) bgr[i] = grey[i / 3];
+    snprintf(path, sizeof path, "%s/boards/%d.png", folder, pose);
+    assert_ok(vs_image_save(path, bgr, 3 * BOARD_WIDTH, BOARD_WIDTH, BOARD_HEIGHT, err));
+  }
+  static vsss_run run;
+  vsss(&run, in_folder("calibrate --checkerboard 7x5 --square-mm 30 --camera %s/boards --out %s/lens.ini"));
+  if (run.status) fail_msg("status %d: %s", run.status, run.err);
+  vs_calib c;
+  snprintf(path, sizeof path, "%s/lens.ini", folder);
+  assert_ok(vs_calib_load(path, &c, err));
+  assert_near(c.fx_px, 496.9, 5); // 240 / tan(0.45)
+  assert_int_equal(c.width, BOARD_WIDTH);
+  assert_true(c.intrinsics_rms_px > 0 && c.intrinsics_rms_px < 0.4);
+}
+
+static void the_example_of_points_makes_a_calibration(void **state) {
+  (void)state;
+  static vsss_run run;
+  vsss(&run, "calibrate --points deploy/calibration/points.example.txt --size 640x480 --height-m 2.2");
+  assert_int_equal(run.status, 0);
+  assert_non_null(strstr(run.out, "9 points: error 0.1"));
+}
+
 static void bad_requests_are_one_line_with_the_fix(void **state) {
   (void)state;
   FILE *f = create("broken.txt");
@@ -165,6 +197,8 @@ int main(void) {
       cmocka_unit_test(points_are_checked_against_a_calibration),
       cmocka_unit_test(a_snapshot_is_saved),
       cmocka_unit_test(printed_tags_are_read_back_at_true_size),
+      cmocka_unit_test(a_folder_of_checkerboard_pictures_gives_the_lens),
+      cmocka_unit_test(the_example_of_points_makes_a_calibration),
       cmocka_unit_test(bad_requests_are_one_line_with_the_fix),
   };
   return cmocka_run_group_tests_name("cli/calibrate", tests, make_files, remove_folder);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "assert_near.h"
+#include "vision/board.h"
 #include "vsss/calib.h"
 #include "vsss/field.h"
 #include "vsss/rng.h"
@@ -88,57 +89,24 @@ static void three_points_a_line_of_points_and_swapped_points_are_refused(void **
   assert_near(solved.translation_m[2], truth.translation_m[2], 0); // a refused solution changes nothing
 }
 
-// A checkerboard of 7 x 5 inner corners in front of a camera, drawn by the ray of every pixel.
-enum { W = 640, H = 480, COLUMNS = 7, ROWS = 5 };
-#define SQUARE_M 0.03
-static void draw_board(const vs_calib *c, unsigned char *grey) {
-  for (int y = 0; y < H; y++)
-    for (int x = 0; x < W; x++) {
-      int white = 0;
-      for (int k = 0; k < 9; k++) {
-        double u = 9, v = 9;
-        vs_calib_to_field(c, x + (k % 3 + 0.5) / 3, y + (k / 3 + 0.5) / 3, 0, &u, &v);
-        int i = (int)floor(u / SQUARE_M), j = (int)floor(v / SQUARE_M);
-        bool board = i >= -1 && i < COLUMNS && j >= -1 && j < ROWS;
-        white += !board || ((i + j) & 1);
-      }
-      grey[y * W + x] = (unsigned char)(30 + white * 200 / 9);
-    }
-}
-
 static void a_checkerboard_in_several_poses_gives_focal_length_and_distortion(void **state) {
   (void)state;
   vs_calib_board *board;
-  assert_ok(vs_calib_board_new(COLUMNS, ROWS, SQUARE_M, &board, err));
-  unsigned char *grey = malloc(W * H);
+  assert_ok(vs_calib_board_new(BOARD_COLUMNS, BOARD_ROWS, BOARD_SQUARE_M, &board, err));
+  unsigned char *grey = malloc(BOARD_WIDTH * BOARD_HEIGHT);
   assert_non_null(grey);
   int seen = 0;
   for (int pose = 0; pose < 7; pose++) {
-    vs_calib c = vs_calib_overhead(W, H, 0.0, 0.9);
-    c.cx_px = 326, c.cy_px = 236, c.k1 = -0.15;
-    double tilt = 0.5 * cos(2.4 * pose), turn = 0.3 * pose, roll = 0.5 * sin(2.4 * pose);
-    double a = cos(tilt), b = sin(tilt), d = cos(turn), e = sin(turn), g = cos(roll), h = sin(roll);
-    const double flat[3][3] = {{d, e, 0}, {a * e, -a * d, b}, {b * e, -b * d, -a}};
-    for (int j = 0; j < 3; j++) { // then about the camera's y
-      c.rotation[0][j] = g * flat[0][j] + h * flat[2][j];
-      c.rotation[1][j] = flat[1][j];
-      c.rotation[2][j] = -h * flat[0][j] + g * flat[2][j];
-    }
-    double middle[3] = {0.09, 0.06, 0}; // of the board, put into the middle of the picture and towards its sides
-    double where[3] = {0.04 * cos(1.1 * pose), 0.03 * sin(1.7 * pose), 0.36 + 0.02 * pose};
-    for (int i = 0; i < 3; i++) {
-      c.translation_m[i] = where[i];
-      for (int j = 0; j < 3; j++) c.translation_m[i] -= c.rotation[i][j] * middle[j];
-    }
-    draw_board(&c, grey);
+    board_draw(pose, grey);
     bool found;
-    assert_ok(vs_calib_board_add(board, grey, W, W, H, &found, err));
+    assert_ok(vs_calib_board_add(board, grey, BOARD_WIDTH, BOARD_WIDTH, BOARD_HEIGHT, &found, err));
     seen += found;
   }
   assert_true(seen >= 6);
   bool found;
   vs_error err;
-  assert_int_equal(vs_calib_board_add(board, grey, W / 2, W / 2, H / 2, &found, &err), VS_FAIL);
+  assert_int_equal(vs_calib_board_add(board, grey, BOARD_WIDTH / 2, BOARD_WIDTH / 2, BOARD_HEIGHT / 2, &found, &err),
+                   VS_FAIL);
   assert_non_null(strstr(err.text, "one size"));
   vs_calib solved = {0};
   assert_ok(vs_calib_board_solve(board, &solved, err));
@@ -149,7 +117,7 @@ static void a_checkerboard_in_several_poses_gives_focal_length_and_distortion(vo
   assert_near(solved.cy_px, 236, 3);
   assert_near(solved.k1, -0.15, 0.05);
   assert_true(solved.intrinsics_rms_px < 0.2);
-  assert_int_equal(solved.width, W);
+  assert_int_equal(solved.width, BOARD_WIDTH);
   free(grey);
   vs_calib_board_free(board);
 }
