@@ -6,6 +6,7 @@
 
 #include "assert_near.h"
 #include "vsss/bus.h"
+#include "vsss/paths.h"
 #include "vsss/rng.h"
 
 static uint8_t picture[5000];
@@ -136,6 +137,50 @@ static void fields_keep_their_meaning(void **state) {
   assert_ok(vs_message_decode(VS_CH_CMD, bytes, size, &out, NULL, err));
   assert_near(out.as.cmd.wheels[2].right_radps, -6.0, 0);
   assert_true(out.as.cmd.stop && out.as.cmd.team == VS_YELLOW && out.as.cmd.state_seq == 99);
+}
+
+// Decodes the golden message of channel and encodes it again, to the same bytes.
+static void golden(vs_channel channel, vs_message *out) {
+  static char line[8192];
+  char path[512], name[32];
+  assert_ok(vs_path_find("tests/golden/bus_v1.txt", path, sizeof path, err));
+  FILE *file = fopen(path, "r");
+  assert_non_null(file);
+  int start = 0;
+  do assert_non_null(fgets(line, sizeof line, file));
+  while (sscanf(line, "%31s %n", name, &start) != 1 || strcmp(name, vs_channel_name(channel)) != 0);
+  fclose(file);
+  uint8_t bytes[4096], again[4096];
+  size_t size = 0;
+  for (unsigned value; sscanf(line + start + 2 * size, "%2x", &value) == 1; size++) bytes[size] = (uint8_t)value;
+  assert_ok(vs_message_decode(channel, bytes, size, out, NULL, err));
+  assert_int_equal(vs_message_encode(out, again, sizeof again), size);
+  assert_memory_equal(again, bytes, size);
+}
+
+static void golden_messages_of_another_implementation_are_read_and_written(void **state) {
+  (void)state;
+  if (no_lcm()) return;
+  vs_message m;
+  golden(VS_CH_CMD, &m);
+  assert_int_equal(m.as.cmd.team, VS_YELLOW);
+  assert_near(m.as.cmd.wheels[1].left_radps, -3.0, 0);
+  assert_near(m.as.cmd.wheels[2].right_radps, -6.0, 0);
+  assert_string_equal(m.as.cmd.source, "emc:?pid=1");
+  golden(VS_CH_REFEREE, &m);
+  assert_int_equal(m.as.referee.event.kind, VS_EVENT_GOAL);
+  assert_int_equal(m.as.referee.score[VS_YELLOW], 2);
+  golden(VS_CH_STATE, &m);
+  // Field n of robot i of team t is n + 100 t + 10 i + 0.5, in the order of vs_robot's fields.
+  const vs_robot *r = &m.as.world.world.robot[VS_YELLOW][2];
+  assert_near(r->pose.x_m, 120.5, 0);
+  assert_near(r->pose.theta_rad, 122.5, 0);
+  assert_near(r->omega_radps, 125.5, 0);
+  assert_near(r->right_radps, 127.5, 0);
+  assert_true(m.as.world.world.robot[VS_BLUE][2].valid && !r->valid);
+  assert_near(m.as.world.world.ball.vz_mps, 3.5, 0);
+  assert_int_equal(m.as.world.game.last_event.quadrant, 3);
+  assert_near(m.as.world.game.last_event.time_s, 11.25, 0);
 }
 
 static void cut_or_lengthened_messages_are_refused(void **state) {
@@ -308,6 +353,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_message_survives_the_wire),
       cmocka_unit_test(fields_keep_their_meaning),
+      cmocka_unit_test(golden_messages_of_another_implementation_are_read_and_written),
       cmocka_unit_test(cut_or_lengthened_messages_are_refused),
       cmocka_unit_test(damaged_bytes_never_crash_the_decoder),
       cmocka_unit_test(another_version_of_a_type_is_refused_by_name),
