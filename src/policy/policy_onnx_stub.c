@@ -3,6 +3,8 @@
 
 vs_status vs_policy_onnx_open(const char *rest, vs_obs_player **out, vs_error *err) {
   *out = NULL;
-  return vs_fail(err, VS_FAIL, "onnx:%s: this build has no ONNX Runtime: run 'sudo sh deploy/setup.sh', then make",
+  return vs_fail(err, VS_FAIL,
+                 "onnx:%s: this build has no ONNX Runtime (package libonnxruntime-dev on Debian 13): run 'sudo sh "
+                 "deploy/setup.sh', then make",
                  rest);
 }

@@ -105,11 +105,41 @@ static void player_with_pid_sends_the_recorded_outputs(void **state) {
   assert_player_repeats("emc:?pid=1", OUT + 2, 1e-3);
 }
 
+// A robot that drives north-east at 0.3 m/s and turns at 2 rad/s: its wheels run at 0.3 -+ 0.035 * 2 m/s, known or not.
+static void player_with_pid_derives_wheel_speeds_it_is_not_told(void **state) {
+  (void)state;
+  vs_player *told, *left_alone;
+  assert_ok(vs_player_open("emc:?pid=1", &told, err));
+  assert_ok(vs_player_open("emc:?pid=1", &left_alone, err));
+  vs_world world = {.ball = {.x_m = 0.2, .y_m = 0.1}};
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    vs_robot *r = &world.robot[VS_OWN][i];
+    r->pose = (vs_pose){-0.6 + 0.3 * i, 0.2 * i, VS_PI / 4};
+    r->vx_mps = r->vy_mps = 0.3 * sqrt(0.5);
+    r->omega_radps = 2;
+  }
+  vs_game game = {0};
+  vs_wheels a[VS_TEAM_SIZE], b[VS_TEAM_SIZE];
+  assert_ok(vs_player_step(left_alone, &world, &game, 1.0 / 30, a, err));
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    world.robot[VS_OWN][i].left_radps = 0.23 / 0.03;
+    world.robot[VS_OWN][i].right_radps = 0.37 / 0.03;
+  }
+  assert_ok(vs_player_step(told, &world, &game, 1.0 / 30, b, err));
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    assert_near(a[i].left_radps, b[i].left_radps, 1e-9);
+    assert_near(a[i].right_radps, b[i].right_radps, 1e-9);
+  }
+  vs_player_close(told);
+  vs_player_close(left_alone);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_recorded_tick_of_the_original_is_repeated),
       cmocka_unit_test(player_sends_the_recorded_wheel_targets),
       cmocka_unit_test(player_with_pid_sends_the_recorded_outputs),
+      cmocka_unit_test(player_with_pid_derives_wheel_speeds_it_is_not_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -128,4 +128,59 @@ static const row keeper[] = {
      GOES(0.17, 0.6, 1)},
 };
 
-int main(void) { return RUN_ROWS("defender", defender, run_defender) + RUN_ROWS("keeper", keeper, run_keeper); }
+// A millimetre inside and outside of the edges.
+static const row defender_edges[] = {
+    {"ball at 0.279: waits at the post", {.ball = {0.279, 0.7}}, GOES(0.32, 0.475, 1)},
+    {"ball at 0.281: goes to its line", {.ball = {0.281, 0.7}}, GOES(0.32, 0.825, 1)},
+    {"ball at 0.529, attacker has it: waits at the post",
+     {.ball = {0.529, 0.7}, .attacker = {0.5, 0.7}, .defender = {0.4, 0.4}},
+     GOES(0.32, 0.475, 1)},
+    {"ball at 0.531, attacker has it: on its line",
+     {.ball = {0.531, 0.7}, .attacker = {0.5, 0.7}, .defender = {0.4, 0.4}},
+     GOES(0.32, 0.7, 1)},
+    {"attacker 9.9 cm from the ball: waits at the post",
+     {.ball = {0.5, 0.7}, .attacker = {0.401, 0.7}, .defender = {0.4, 0.4}},
+     GOES(0.32, 0.475, 1)},
+    {"attacker 10.1 cm from the ball: on its line",
+     {.ball = {0.5, 0.7}, .attacker = {0.399, 0.7}, .defender = {0.4, 0.4}},
+     GOES(0.32, 0.7, 1)},
+    {"ball at 0.919: on its line", {.ball = {0.919, 0.5}}, GOES(0.32, 0.5, 1)},
+    {"ball at 0.921: behind the attacker", {.ball = {0.921, 0.5}}, GOES(0.6, 0.5, 1)},
+    {"our goal, inside", {.ball = {0.8, 0.6}, .defender = {0.109, 0.5}}, GOES(0.85, 0.65, 1)},
+    {"our goal, outside", {.ball = {0.8, 0.6}, .defender = {0.111, 0.5}}, GOES(0.32, 0.6, 1)},
+    {"their goal, inside", {.ball = {1.2, 0.6}, .defender = {1.591, 0.5}}, GOES(0.85, 0.65, 1)},
+    {"their goal, outside", {.ball = {1.2, 0.6}, .defender = {1.589, 0.5}}, GOES(0.6, 0.6, 1)},
+    {"ball 7.9 cm away: touched", {.ball = {0.679, 0.4}}, SPINS(35)},
+    {"ball 8.1 cm away: not touched", {.ball = {0.681, 0.4}}, GOES(0.32, 0.4, 1)},
+    {"2.1 cm from its place: goes on", {.ball = {0.7, 0.5}, .defender = {0.341, 0.5}}, GOES(0.32, 0.5, 1)},
+    {"1.9 cm from its place: stops", {.ball = {0.7, 0.5}, .defender = {0.339, 0.5}}, STOPS},
+};
+
+static const row keeper_edges[] = {
+    {"goal corner, upper, inside", {.ball = {0.252, 0.826}}, GOES(0.17, 0.935, 1)},
+    {"goal corner, upper, below it", {.ball = {0.252, 0.824}}, GOES(0.17, 0.824, 1)},
+    {"goal corner, right of it", {.ball = {0.254, 0.9}}, GOES(0.17, 0.825, 1)},
+    {"goal corner, left edge, inside", {.ball = {0.081, 0.9}}, GOES(0.17, 0.935, 1)},
+    {"goal corner, left of it", {.ball = {0.079, 0.9}}, GOES(0.17, 0.825, 1)},
+    {"goal corner, lower, inside", {.ball = {0.252, 0.474}}, GOES(0.17, 0.365, 1)},
+    {"goal corner, lower, above it", {.ball = {0.252, 0.476}}, GOES(0.17, 0.476, 1)},
+    {"ball 8.2 cm away: touched", {.ball = {0.252, 0.651}, IN_GOAL_AREA}, SPINS(-35)},
+    {"2.9 cm from its place, ball comes fast: spins",
+     {.ball = {0.5, 0.679}, .velocity = {-0.5, 0}, IN_GOAL_AREA},
+     SPINS(-35)},
+    {"3.1 cm from its place, ball comes fast: goes there",
+     {.ball = {0.5, 0.681}, .velocity = {-0.5, 0}, IN_GOAL_AREA},
+     GOES(0.17, 0.681, 1)},
+    {"penalty against us, 3.9 cm from its place: spins",
+     {.ball = {0.475, 0.65}, .keeper = {0.145, 0.611}, PENALTY_AGAINST},
+     SPINS(-35)},
+    {"penalty against us, 4.1 cm from its place: goes there",
+     {.ball = {0.475, 0.65}, .keeper = {0.145, 0.609}, PENALTY_AGAINST},
+     GOES(0.145, 0.65, 1)},
+};
+
+int main(void) {
+  int failed = RUN_ROWS("defender", defender, run_defender) + RUN_ROWS("keeper", keeper, run_keeper);
+  failed += RUN_ROWS("defender's edges", defender_edges, run_defender);
+  return failed + RUN_ROWS("keeper's edges", keeper_edges, run_keeper);
+}
