@@ -78,7 +78,7 @@ test: tests
 asan:
 	@$(MAKE) --no-print-directory FLAVOUR=asan test
 tsan:
-	@$(MAKE) --no-print-directory FLAVOUR=tsan test
+	@TSAN_OPTIONS=suppressions=$(CURDIR)/tests/tsan.supp $(MAKE) --no-print-directory FLAVOUR=tsan test
 
 lint:
 	@sh tests/lint/run.sh
