@@ -16,7 +16,7 @@ extern "C" {
 #define VS_NOISE_Y_M         1.679e-3
 #define VS_NOISE_HEADING_RAD 3.123e-2
 
-// A range from which one value an episode is drawn; low == high: fixed.
+// A range from which one value an episode is drawn, for each wheel or robot where they differ; low == high: fixed.
 typedef struct vs_range {
   double low, high;
 } vs_range;
@@ -24,38 +24,52 @@ typedef struct vs_range {
 typedef struct vs_realism {
   bool noise;                                      // the paper's noise at all
   vs_range noise_scale;                            // 1
-  vs_range position_bias_m, heading_bias_rad;      // amplitude of a constant offset; 0
+  vs_range position_bias_m, heading_bias_rad;      // size of a constant offset, in a random direction; 0
   vs_range position_scale;                         // 1
-  vs_range latency_s, latency_jitter_s;            // capture -> wheel; 0
-  vs_range detection_loss, detection_burst_frames; // probability per object and frame; length; 0, 1
-  vs_range radio_loss, radio_burst_frames;         // probability per frame; length; 0, 1
+  vs_range latency_s, latency_jitter_s;            // capture -> wheel; changes by up to +- jitter each frame; 0
+  vs_range detection_loss, detection_burst_frames; // probability per object and frame; length of each; 0, 1
+  vs_range radio_loss, radio_burst_frames;         // probability per team and frame; length of each; 0, 1
   vs_range motor_tau_s, wheel_gain, wheel_limit_scale, dead_zone_radps;
-  vs_range floor_friction_scale, robot_mass_scale, ball_mass_scale, ball_rolling_scale;
+  vs_range wheel_radius_scale, track_scale, com_offset_m;
+  vs_range floor_friction_scale, robot_mass_scale, ball_mass_scale, ball_rolling_scale, ball_restitution;
+  vs_range push_per_s, push_mps;
 } vs_realism;
 
-vs_realism vs_realism_default(void);                                         // the paper's noise only
-vs_status vs_realism_load(const char *path, vs_realism *out, vs_error *err); // INI over the default
+vs_realism vs_realism_default(void); // the paper's noise only
+// INI over the default: one section per range of the struct with keys low and high; noise = true or false at the top.
+vs_status vs_realism_load(const char *path, vs_realism *out, vs_error *err);
+// The simulator's parameters of the episode with this seed.
+vs_sim_params vs_realism_draw(const vs_realism *realism, uint64_t seed);
 
 #define VS_SENSOR_DELAY_FRAMES 8
+#define VS_SENSOR_OBJECTS      (VS_TEAMS * VS_TEAM_SIZE + 1) // the ball is last
+// A detection lost for longer is no longer valid (its last place is still told), as the field's tracker does.
+#define VS_SENSOR_HOLD_FRAMES 5
+
 // One match's sensors and radios. Plain data: a copy is a snapshot. Truth in, measurement out, once a frame; both
 // teams see the same camera. Latency delays the commands (camera and radio delay are one number to the policy).
 typedef struct vs_sensors {
   vs_rng rng;
   vs_sim_params params; // drawn for this episode
-  double noise_scale, bias_x_m, bias_y_m, bias_heading_rad, position_scale, latency_s, latency_jitter_s;
-  double detection_loss, detection_burst_frames, radio_loss, radio_burst_frames;
   bool noise;
-  int lost_frames[VS_TEAMS * VS_TEAM_SIZE + 1]; // left in this burst; the ball is last
+  double noise_scale, bias_x_m, bias_y_m, bias_heading_rad, position_scale;
+  double latency_s, latency_jitter_s, detection_loss, radio_loss;
+  vs_range detection_burst_frames, radio_burst_frames;
+  int lost_frames[VS_SENSOR_OBJECTS]; // left in this burst
+  int held_frames[VS_SENSOR_OBJECTS]; // since the last detection
   int radio_lost_frames[VS_TEAMS];
   vs_world last; // last measurement: held where a detection is lost
-  int have_last;
+  bool have_last;
   vs_wheels queue[VS_SENSOR_DELAY_FRAMES][VS_TEAMS][VS_TEAM_SIZE]; // newest first
   vs_wheels applied[VS_TEAMS][VS_TEAM_SIZE];
 } vs_sensors;
 
+// A new episode from this seed; give params to vs_sim_reset.
 void vs_sensors_reset(vs_sensors *sensors, const vs_realism *realism, uint64_t seed);
+// Velocities are passed on as a good tracker would estimate them; wheel speeds are not seen by a camera and become 0.
 void vs_sensors_measure(vs_sensors *sensors, const vs_world *truth, vs_world *measured);
-// Commands as decided in this frame -> commands as they arrive at the robots in this frame.
+// Commands as decided in this frame -> commands at the robots, the mean over this frame. A delay of 1.8 frames mixes
+// the commands of one and two frames ago, 0.2 to 0.8. A team whose radio frame is lost keeps its last command.
 void vs_sensors_command(vs_sensors *sensors, const vs_wheels in[VS_TEAMS][VS_TEAM_SIZE],
                         vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]);
 

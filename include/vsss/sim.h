@@ -35,13 +35,19 @@ const void *vs_model_mjmodel(const vs_model *model); // const mjModel *, for the
 
 // Physical parameters of one episode (domain randomisation); the default is the nominal robot.
 typedef struct vs_sim_params {
-  double wheel_gain[VS_TEAMS][VS_TEAM_SIZE][2]; // left, right: reached speed / commanded speed; 1
-  double wheel_limit_scale;                     // battery: scales VS_WHEEL_LIMIT_RADPS; 1
-  double motor_tau_s;                           // extra first-order lag of the wheel command; 0 = none
-  double dead_zone_radps;                       // commands below this do nothing; 0
-  double floor_friction_scale;                  // 1
-  double robot_mass_scale;                      // 1
-  double ball_mass_scale, ball_rolling_scale;   // 1, 1
+  double wheel_gain[VS_TEAMS][VS_TEAM_SIZE][2];      // left, right: reached speed / commanded speed; 1
+  double wheel_radius_scale[VS_TEAMS][VS_TEAM_SIZE]; // 1
+  double track_scale[VS_TEAMS][VS_TEAM_SIZE];        // 1
+  double com_offset_m[VS_TEAMS][VS_TEAM_SIZE][2];    // centre of mass off the middle: forward, left; 0
+  double wheel_limit_scale;                          // battery: scales VS_WHEEL_LIMIT_RADPS; 1
+  double motor_tau_s;                                // extra first-order lag of the wheel command; 0 = none
+  double dead_zone_radps;                            // commands below this do nothing; 0
+  double floor_friction_scale;                       // 1
+  double robot_mass_scale;                           // 1
+  double ball_mass_scale, ball_rolling_scale;        // 1, 1
+  double ball_restitution;                           // at walls, and 2/3 of it at robots; 0.6
+  double push_per_s, push_mps; // random shoves: how often each robot gets one, and its largest change of velocity; 0, 0
+  uint64_t push_seed;
 } vs_sim_params;
 vs_sim_params vs_sim_params_default(void);
 

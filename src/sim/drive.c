@@ -23,7 +23,7 @@ double vs_drive_target(const vs_sim_params *params, int robot, int side, double 
 
 // One robot's step, in its own axes: u forward, s to the left, w about the vertical.
 typedef struct traction {
-  double dt, mass, inertia, friction;
+  double dt, mass, inertia, friction, radius, half_track;
   double u, s, w;                // velocities at the end of the step without friction: other forces included
   double push_u, push_s;         // contact forces of the last step, no more than the robot's weight
   double rim[SIDES];             // rim speeds at the end of the step without friction
@@ -35,15 +35,15 @@ typedef struct traction {
 static double slip(const traction *t, int side) {
   double sign = side == LEFT ? -1 : 1;
   double u = t->u + t->dt * (t->along[LEFT] + t->along[RIGHT]) / t->mass;
-  double w = t->w + t->dt * VS_HALF_TRACK_M * (t->along[RIGHT] - t->along[LEFT]) / t->inertia;
-  double rim = t->rim[side] - t->dt * VS_WHEEL_RADIUS_M * VS_WHEEL_RADIUS_M / WHEEL_INERTIA_KGM2 * t->along[side];
-  return u + sign * VS_HALF_TRACK_M * w - rim - t->keep[side];
+  double w = t->w + t->dt * t->half_track * (t->along[RIGHT] - t->along[LEFT]) / t->inertia;
+  double rim = t->rim[side] - t->dt * t->radius * t->radius / WHEEL_INERTIA_KGM2 * t->along[side];
+  return u + sign * t->half_track * w - rim - t->keep[side];
 }
 
 // Forces that stop the slip: two equations for the wheels, one sideways.
 static void full_grip(traction *t) {
-  double body = t->dt / t->mass, turn = t->dt * VS_HALF_TRACK_M * VS_HALF_TRACK_M / t->inertia;
-  double a = body + turn + t->dt * VS_WHEEL_RADIUS_M * VS_WHEEL_RADIUS_M / WHEEL_INERTIA_KGM2, b = body - turn;
+  double body = t->dt / t->mass, turn = t->dt * t->half_track * t->half_track / t->inertia;
+  double a = body + turn + t->dt * t->radius * t->radius / WHEEL_INERTIA_KGM2, b = body - turn;
   t->along[LEFT] = t->along[RIGHT] = 0;
   double left = slip(t, LEFT), right = slip(t, RIGHT);
   t->along[LEFT] = (b * right - a * left) / (a * a - b * b);
@@ -57,7 +57,7 @@ static void full_grip(traction *t) {
 static void wheel_loads(const traction *t, double load[SIDES]) {
   double skid = fabs(t->along[LEFT] + t->along[RIGHT] + t->push_u) * COM_HEIGHT_M / SKID_DISTANCE_M;
   double wheels = fmax(0, t->mass * GRAVITY_MPS2 - skid);
-  double shift = (t->sideways + t->push_s) * COM_HEIGHT_M / (2 * VS_HALF_TRACK_M);
+  double shift = (t->sideways + t->push_s) * COM_HEIGHT_M / (2 * t->half_track);
   shift = vs_clamp(shift, -wheels / 2, wheels / 2);
   load[LEFT] = wheels / 2 - shift;
   load[RIGHT] = wheels / 2 + shift;
@@ -80,8 +80,8 @@ static bool holds(const traction *t, const double load[SIDES]) {
 // Sliding: each wheel's force is shortened to its friction circle in turn, the others answering. Starts from the forces
 // of the last step, which change little while a robot slides.
 static void slide(traction *t, wheel_state wheel[SIDES]) {
-  double response = t->dt * (1 / t->mass + VS_HALF_TRACK_M * VS_HALF_TRACK_M / t->inertia +
-                             VS_WHEEL_RADIUS_M * VS_WHEEL_RADIUS_M / WHEEL_INERTIA_KGM2);
+  double response =
+      t->dt * (1 / t->mass + t->half_track * t->half_track / t->inertia + t->radius * t->radius / WHEEL_INERTIA_KGM2);
   double load[SIDES], side_force[SIDES], grip = t->sideways;
   for (int side = LEFT; side < SIDES; side++) t->along[side] = wheel[side].along_n;
   t->sideways = wheel[LEFT].sideways_n + wheel[RIGHT].sideways_n;
@@ -111,7 +111,10 @@ static void step_planar_robot(vs_sim *sim, int index) {
   traction t = {.dt = sim->mj->opt.timestep,
                 .mass = sim->mj->body_mass[address->body],
                 .inertia = sim->mj->body_inertia[3 * address->body + 2],
-                .friction = WHEEL_FRICTION * sim->params.floor_friction_scale};
+                .friction = WHEEL_FRICTION * sim->params.floor_friction_scale,
+                .radius =
+                    VS_WHEEL_RADIUS_M * sim->params.wheel_radius_scale[index / VS_TEAM_SIZE][index % VS_TEAM_SIZE],
+                .half_track = VS_HALF_TRACK_M * sim->params.track_scale[index / VS_TEAM_SIZE][index % VS_TEAM_SIZE]};
   // Half a step back: the velocity found is held while the robot turns on, and its mean slip should be right.
   double heading = d->qpos[address->qpos + 2] - 0.5 * t.dt * v[2];
   double c = cos(heading), n = sin(heading);
@@ -124,9 +127,9 @@ static void step_planar_robot(vs_sim *sim, int index) {
   t.w = v[2] + t.dt * push[2] / t.inertia;
   t.keep_s = keep * sideways;
   for (int side = LEFT; side < SIDES; side++) {
-    double rim = VS_WHEEL_RADIUS_M * wheel[side].speed_radps;
-    t.rim[side] = rim + t.dt * VS_WHEEL_RADIUS_M * motor_torque(&wheel[side]) / WHEEL_INERTIA_KGM2;
-    t.keep[side] = keep * (u + (side == LEFT ? -1 : 1) * VS_HALF_TRACK_M * v[2] - rim);
+    double rim = t.radius * wheel[side].speed_radps;
+    t.rim[side] = rim + t.dt * t.radius * motor_torque(&wheel[side]) / WHEEL_INERTIA_KGM2;
+    t.keep[side] = keep * (u + (side == LEFT ? -1 : 1) * t.half_track * v[2] - rim);
   }
   double load[SIDES];
   full_grip(&t);
@@ -135,10 +138,9 @@ static void step_planar_robot(vs_sim *sim, int index) {
   double forward = t.along[LEFT] + t.along[RIGHT];
   applied[0] = c * forward - n * t.sideways;
   applied[1] = n * forward + c * t.sideways;
-  applied[2] = VS_HALF_TRACK_M * (t.along[RIGHT] - t.along[LEFT]);
+  applied[2] = t.half_track * (t.along[RIGHT] - t.along[LEFT]);
   for (int side = LEFT; side < SIDES; side++) {
-    wheel[side].speed_radps =
-        t.rim[side] / VS_WHEEL_RADIUS_M - t.dt * VS_WHEEL_RADIUS_M / WHEEL_INERTIA_KGM2 * t.along[side];
+    wheel[side].speed_radps = t.rim[side] / t.radius - t.dt * t.radius / WHEEL_INERTIA_KGM2 * t.along[side];
     wheel[side].along_n = t.along[side];
     wheel[side].sideways_n = t.sideways * share(load, side);
   }

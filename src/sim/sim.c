@@ -14,9 +14,12 @@ vs_sim_params vs_sim_params_default(void) {
                           .floor_friction_scale = 1,
                           .robot_mass_scale = 1,
                           .ball_mass_scale = 1,
-                          .ball_rolling_scale = 1};
+                          .ball_rolling_scale = 1,
+                          .ball_restitution = NOMINAL_RESTITUTION};
   for (int i = 0; i < ROBOTS; i++) {
-    for (int side = LEFT; side < SIDES; side++) params.wheel_gain[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE][side] = 1;
+    int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE;
+    params.wheel_gain[team][index][LEFT] = params.wheel_gain[team][index][RIGHT] = 1;
+    params.wheel_radius_scale[team][index] = params.track_scale[team][index] = 1;
   }
   return params;
 }
@@ -70,7 +73,8 @@ void vs_sim_reset(vs_sim *sim, const vs_sim_params *params) {
   sim->params = params ? *params : vs_sim_params_default();
   double tau = sim->params.motor_tau_s;
   sim->lag = tau > 0 ? 1 - exp(-sim->mj->opt.timestep / tau) : 1;
-  vs_randomize_apply(sim);
+  sim->push_rng = vs_rng_make(sim->params.push_seed, 0);
+  sim->out_of_memory = !vs_randomize_apply(sim);
   sim->data->time = 0;
   sim->frame = 0;
   memcpy(sim->data->qpos, sim->mj->qpos0, sizeof(double) * sim->mj->nq); // the wheels' angles, that placing leaves
@@ -127,7 +131,19 @@ static void step_frame(void *context) {
   }
 }
 
+// Shoves: as if something had bumped into a robot between two frames.
+static void shove(vs_sim *sim) {
+  if (sim->params.push_per_s <= 0) return;
+  for (int i = 0; i < ROBOTS; i++) {
+    if (vs_rng_uniform(&sim->push_rng) >= sim->params.push_per_s / 30) continue;
+    double *v = sim->data->qvel + sim->model->robot[i].qvel;
+    v[0] += vs_rng_range(&sim->push_rng, -sim->params.push_mps, sim->params.push_mps);
+    v[1] += vs_rng_range(&sim->push_rng, -sim->params.push_mps, sim->params.push_mps);
+  }
+}
+
 vs_status vs_sim_frame(vs_sim *sim, const vs_wheels command[VS_TEAMS][VS_TEAM_SIZE], vs_error *err) {
+  if (sim->out_of_memory) return vs_fail(err, VS_FAIL, "out of memory for this episode's randomised model");
   frame_work work = {.sim = sim};
   for (int i = 0; i < ROBOTS; i++) {
     vs_wheels wheels = command[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
@@ -139,6 +155,7 @@ vs_status vs_sim_frame(vs_sim *sim, const vs_wheels command[VS_TEAMS][VS_TEAM_SI
     work.target[i][LEFT] = vs_drive_target(&sim->params, i, LEFT, wheels.left_radps);
     work.target[i][RIGHT] = vs_drive_target(&sim->params, i, RIGHT, wheels.right_radps);
   }
+  shove(sim);
   vs_status status = vs_mujoco_call(step_frame, &work, err);
   if (status != VS_OK) return status;
   sim->frame++;

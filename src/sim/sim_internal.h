@@ -4,6 +4,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include "vsss/rng.h"
 #include "vsss/sim.h"
 
 #define ROBOTS (VS_TEAMS * VS_TEAM_SIZE) // numbered team * VS_TEAM_SIZE + index
@@ -40,10 +41,15 @@ struct vs_sim {
   vs_sim_params params;
   double lag; // share of the way to the commanded speed that target_radps goes in one step; 1: no lag
   uint32_t frame;
+  vs_rng push_rng;
+  bool out_of_memory; // of the last reset
   wheel_state wheel[ROBOTS][SIDES];
 };
 
-// randomize.c: makes sim->mj fit sim->params.
-void vs_randomize_apply(vs_sim *sim);
+// Of the contact laws ball_wall in models/field.xml; ball_robot's is 2/3 of it.
+#define NOMINAL_RESTITUTION 0.6
+
+// randomize.c: makes sim->mj fit sim->params. False: out of memory, sim->mj is the nominal model.
+bool vs_randomize_apply(vs_sim *sim);
 
 #endif

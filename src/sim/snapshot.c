@@ -7,6 +7,7 @@
 typedef struct snapshot {
   vs_sim_params params;
   uint32_t frame;
+  vs_rng push_rng;
   wheel_state wheel[ROBOTS][SIDES];
   double time;
 } snapshot; // followed by qpos, qvel, qacc_warmstart, qfrc_constraint
@@ -16,7 +17,7 @@ size_t vs_sim_state_size(const vs_sim *sim) {
 }
 
 void vs_sim_save(const vs_sim *sim, void *state) {
-  snapshot head = {.params = sim->params, .frame = sim->frame, .time = sim->data->time};
+  snapshot head = {.params = sim->params, .frame = sim->frame, .push_rng = sim->push_rng, .time = sim->data->time};
   memcpy(head.wheel, sim->wheel, sizeof head.wheel);
   memcpy(state, &head, sizeof head);
   char *at = (char *)state + sizeof head;
@@ -32,6 +33,7 @@ void vs_sim_restore(vs_sim *sim, const void *state) {
   memcpy(&head, state, sizeof head);
   vs_sim_reset(sim, &head.params);
   sim->frame = head.frame;
+  sim->push_rng = head.push_rng;
   sim->data->time = head.time;
   memcpy(sim->wheel, head.wheel, sizeof head.wheel);
   const char *at = (const char *)state + sizeof head;

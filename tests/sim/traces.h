@@ -14,6 +14,7 @@
 #define TRACE_FRAMES 30
 #define TRACE_MOST   128
 #define TRACE_KINDS  8
+#define TRACE_MELEE  7 // six robots at random: not among the kinds that the agreement is asked of
 
 static const char *const trace_kind_name[TRACE_KINDS] = {"step", "spin", "arc",   "random",
                                                          "ball", "wall", "robot", "melee"};

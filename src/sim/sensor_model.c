@@ -1,0 +1,115 @@
+// From the true world to what the camera and the tracker tell, and from decided commands to those that arrive.
+#include "vsss/sensor_model.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "vsss/field.h"
+#include "vsss/geom.h"
+
+#define FRAMES_PER_S 30.0
+#define NEAR_WALL_M  0.1 // detections are lost twice as often there: light falls off, walls throw shadows
+
+static double draw(vs_rng *rng, vs_range range) { return vs_rng_range(rng, range.low, range.high); }
+
+void vs_sensors_reset(vs_sensors *sensors, const vs_realism *realism, uint64_t seed) {
+  memset(sensors, 0, sizeof *sensors);
+  sensors->rng = vs_rng_make(seed, 0);
+  sensors->params = vs_realism_draw(realism, seed);
+  sensors->noise = realism->noise;
+  sensors->noise_scale = draw(&sensors->rng, realism->noise_scale);
+  double bias = draw(&sensors->rng, realism->position_bias_m), to = vs_rng_range(&sensors->rng, 0, 2 * VS_PI);
+  sensors->bias_x_m = bias * cos(to);
+  sensors->bias_y_m = bias * sin(to);
+  double turn = draw(&sensors->rng, realism->heading_bias_rad);
+  sensors->bias_heading_rad = vs_rng_below(&sensors->rng, 2) ? turn : -turn;
+  sensors->position_scale = draw(&sensors->rng, realism->position_scale);
+  sensors->latency_s = draw(&sensors->rng, realism->latency_s);
+  sensors->latency_jitter_s = draw(&sensors->rng, realism->latency_jitter_s);
+  sensors->detection_loss = draw(&sensors->rng, realism->detection_loss);
+  sensors->radio_loss = draw(&sensors->rng, realism->radio_loss);
+  sensors->detection_burst_frames = realism->detection_burst_frames;
+  sensors->radio_burst_frames = realism->radio_burst_frames;
+}
+
+// Length of a loss that begins now, in whole frames, this one included.
+static int burst(vs_rng *rng, vs_range frames) {
+  int low = (int)lround(frames.low), high = (int)lround(frames.high);
+  return low + (int)vs_rng_below(rng, (uint32_t)(high - low) + 1);
+}
+
+static double error(vs_sensors *s, double sigma) {
+  return s->noise ? s->noise_scale * sigma * vs_rng_normal(&s->rng) : 0;
+}
+
+static void measure_place(vs_sensors *s, double *x_m, double *y_m) {
+  *x_m = *x_m * s->position_scale + s->bias_x_m + error(s, VS_NOISE_X_M);
+  *y_m = *y_m * s->position_scale + s->bias_y_m + error(s, VS_NOISE_Y_M);
+}
+
+// Whether this frame's detection of an object at (x, y) is lost; counts what is left of the burst.
+static bool lost(vs_sensors *s, int object, double x_m, double y_m) {
+  if (s->detection_loss <= 0) return false;
+  if (s->lost_frames[object] == 0) {
+    bool near_wall =
+        fabs(x_m) > VS_FIELD_HALF_LENGTH_M - NEAR_WALL_M || fabs(y_m) > VS_FIELD_HALF_WIDTH_M - NEAR_WALL_M;
+    if (vs_rng_uniform(&s->rng) >= s->detection_loss * (near_wall ? 2 : 1)) return false;
+    s->lost_frames[object] = burst(&s->rng, s->detection_burst_frames);
+  }
+  s->lost_frames[object]--;
+  return s->have_last; // nothing to hold before the first detection
+}
+
+static bool still_valid(vs_sensors *s, int object, bool is_lost) {
+  s->held_frames[object] = is_lost ? s->held_frames[object] + 1 : 0;
+  return s->held_frames[object] <= VS_SENSOR_HOLD_FRAMES;
+}
+
+void vs_sensors_measure(vs_sensors *s, const vs_world *truth, vs_world *measured) {
+  vs_world world = *truth;
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
+    int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE;
+    vs_robot *robot = &world.robot[team][index];
+    robot->left_radps = robot->right_radps = 0;
+    bool is_lost = lost(s, i, robot->pose.x_m, robot->pose.y_m);
+    measure_place(s, &robot->pose.x_m, &robot->pose.y_m);
+    double heading = robot->pose.theta_rad + s->bias_heading_rad + error(s, VS_NOISE_HEADING_RAD);
+    robot->pose.theta_rad = vs_wrap_rad(heading);
+    if (is_lost) *robot = s->last.robot[team][index];
+    robot->valid = still_valid(s, i, is_lost);
+  }
+  bool ball_lost = lost(s, VS_SENSOR_OBJECTS - 1, world.ball.x_m, world.ball.y_m);
+  measure_place(s, &world.ball.x_m, &world.ball.y_m);
+  if (ball_lost) world.ball = s->last.ball;
+  world.ball.valid = still_valid(s, VS_SENSOR_OBJECTS - 1, ball_lost);
+  s->last = world;
+  s->have_last = true;
+  *measured = world;
+}
+
+static vs_wheels mix(vs_wheels a, vs_wheels b, double share_of_b) {
+  if (share_of_b == 0) return a;
+  return (vs_wheels){a.left_radps + share_of_b * (b.left_radps - a.left_radps),
+                     a.right_radps + share_of_b * (b.right_radps - a.right_radps)};
+}
+
+void vs_sensors_command(vs_sensors *s, const vs_wheels in[VS_TEAMS][VS_TEAM_SIZE],
+                        vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]) {
+  memmove(s->queue[1], s->queue[0], sizeof s->queue - sizeof s->queue[0]);
+  memcpy(s->queue[0], in, sizeof s->queue[0]);
+  double latency_s = s->latency_s;
+  if (s->latency_jitter_s > 0) latency_s += vs_rng_range(&s->rng, -s->latency_jitter_s, s->latency_jitter_s);
+  double frames = vs_clamp(latency_s * FRAMES_PER_S, 0, VS_SENSOR_DELAY_FRAMES - 1.001);
+  int whole = (int)frames;
+  for (int team = 0; team < VS_TEAMS; team++) {
+    if (s->radio_loss > 0 && s->radio_lost_frames[team] == 0 && vs_rng_uniform(&s->rng) < s->radio_loss) {
+      s->radio_lost_frames[team] = burst(&s->rng, s->radio_burst_frames);
+    }
+    bool arrives = s->radio_lost_frames[team] == 0;
+    if (!arrives) s->radio_lost_frames[team]--;
+    for (int i = 0; i < VS_TEAM_SIZE && arrives; i++) {
+      s->applied[team][i] = mix(s->queue[whole][team][i], s->queue[whole + 1][team][i], frames - whole);
+    }
+  }
+  memcpy(out, s->applied, sizeof s->applied);
+}
