@@ -9,7 +9,6 @@
 #include "vsss/field.h"
 #include "vsss/geom.h"
 
-#define GRAVITY_MPS2 9.81
 // How fast gripping wheels lose slip, as MuJoCo's contacts do: 2 / (solimp solref) of class wheel_floor. Since its
 // constraints leave out the turning of their axes, a curve is driven with a sideways slip of its acceleration / this.
 #define SLIP_DECAY_PER_S (2 / (0.95 * 0.015))
@@ -157,4 +156,5 @@ void vs_drive_step(vs_sim *sim, const double target[ROBOTS][SIDES]) {
     }
     if (sim->model->drive == VS_DRIVE_PLANAR) step_planar_robot(sim, i);
   }
+  if (sim->model->drive == VS_DRIVE_PLANAR) vs_ball_step(sim);
 }

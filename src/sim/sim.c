@@ -103,8 +103,11 @@ void vs_sim_place(vs_sim *sim, const vs_world *world) {
       qpos[2] = pose.theta_rad;
     }
   }
-  const double ball[7] = {world->ball.x_m, world->ball.y_m, VS_BALL_RADIUS_M, 1, 0, 0, 0};
-  memcpy(sim->data->qpos + sim->model->ball_qpos, ball, sizeof ball);
+  double *ball = sim->data->qpos + sim->model->ball_qpos;
+  const double contact[7] = {world->ball.x_m, world->ball.y_m, VS_BALL_RADIUS_M, 1, 0, 0, 0};
+  const double planar[6] = {world->ball.x_m, world->ball.y_m, 1, 0, 0, 0};
+  if (sim->model->drive == VS_DRIVE_CONTACT) memcpy(ball, contact, sizeof contact);
+  if (sim->model->drive == VS_DRIVE_PLANAR) memcpy(ball, planar, sizeof planar);
 }
 
 static vs_status check_warnings(const vs_sim *sim, vs_error *err) {
@@ -197,7 +200,8 @@ void vs_sim_world(const vs_sim *sim, vs_world *out) {
     robot->valid = true;
   }
   const double *q = sim->data->qpos + sim->model->ball_qpos, *v = sim->data->qvel + sim->model->ball_qvel;
-  out->ball = (vs_ball){q[0], q[1], q[2], v[0], v[1], v[2], true};
+  bool contact = sim->model->drive == VS_DRIVE_CONTACT;
+  out->ball = (vs_ball){q[0], q[1], contact ? q[2] : VS_BALL_RADIUS_M, v[0], v[1], contact ? v[2] : 0, true};
 }
 
 void *vs_sim_mjdata(vs_sim *sim) { return sim->data; }

@@ -178,13 +178,40 @@ static vs_status check_field(const mjModel *mj, const char *path, vs_error *err)
   return VS_OK;
 }
 
+// Frictions that both drives must share: MuJoCo's contacts here, drive.h's numbers in the planar drive.
+static vs_status check_floor_contacts(const mjModel *mj, const char *path, vs_error *err) {
+  int floor, ball;
+  TRY(find(mj, path, mjOBJ_GEOM, "geom", "floor", &floor, err));
+  TRY(find(mj, path, mjOBJ_GEOM, "geom", "ball", &ball, err));
+  for (int pair = 0; pair < mj->npair; pair++) {
+    int other = mj->pair_geom1[pair] == floor ? mj->pair_geom2[pair] : mj->pair_geom1[pair];
+    if (mj->pair_geom1[pair] != floor && mj->pair_geom2[pair] != floor) continue;
+    const double *friction = mj->pair_friction + 5 * pair;
+    const char *name = mj_id2name(mj, mjOBJ_GEOM, other);
+    if (other == ball) {
+      TRY(expect(path, name, "sliding friction", friction[0], BALL_FRICTION, 1e-9, err));
+      TRY(expect(path, name, "rolling friction", friction[3], BALL_ROLLING_M, 1e-9, err));
+    } else if (mj->pair_dim[pair] > 1) { // a wheel; skids have none
+      TRY(expect(path, name, "friction", friction[0], WHEEL_FRICTION, 1e-9, err));
+    }
+  }
+  return VS_OK;
+}
+
 static vs_status bind(vs_model *model, const char *path, vs_error *err) {
   const mjModel *mj = model->mj;
   TRY(check_field(mj, path, err));
   int geom;
   TRY(find(mj, path, mjOBJ_GEOM, "geom", "ball", &geom, err));
   TRY(find(mj, path, mjOBJ_BODY, "body", "ball", &model->ball_body, err));
-  TRY(find_joint(mj, path, "ball", mjJNT_FREE, &model->ball_qpos, &model->ball_qvel, err));
+  if (model->drive == VS_DRIVE_CONTACT) {
+    TRY(find_joint(mj, path, "ball", mjJNT_FREE, &model->ball_qpos, &model->ball_qvel, err));
+    TRY(check_floor_contacts(mj, path, err));
+  } else {
+    TRY(find_joint(mj, path, "ball", mjJNT_BALL, NULL, NULL, err));
+    TRY(find_joint(mj, path, "ball_y", mjJNT_SLIDE, NULL, NULL, err));
+    TRY(find_joint(mj, path, "ball_x", mjJNT_SLIDE, &model->ball_qpos, &model->ball_qvel, err));
+  }
   TRY(expect(path, "ball", "radius", mj->geom_size[3 * geom], VS_BALL_RADIUS_M, 1e-9, err));
   TRY(expect(path, "ball", "mass", mj->body_mass[model->ball_body], VS_BALL_MASS_KG, 1e-9, err));
   for (int i = 0; i < ROBOTS; i++) TRY(bind_robot(model, path, i, err));
