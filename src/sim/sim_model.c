@@ -12,7 +12,7 @@
 #include "vsss/paths.h"
 
 // Chosen by the agreement table of bench_sim: see tests/bench/bench_sim.c.
-#define CONTACT_SUBSTEPS 6
+#define CONTACT_SUBSTEPS 5
 #define PLANAR_SUBSTEPS  5
 
 const char *vs_drive_name(vs_drive drive) { return drive == VS_DRIVE_PLANAR ? "planar" : "contact"; }
@@ -159,10 +159,10 @@ static vs_status check_field(const mjModel *mj, const char *path, vs_error *err)
       {"corner_2", -corner_x, corner_y},
       {"corner_3", -corner_x, -corner_y},
       {"corner_4", corner_x, -corner_y},
-      {"end_1", VS_FIELD_HALF_LENGTH_M + VS_GOAL_DEPTH_M / 2, end_y},
-      {"end_2", -VS_FIELD_HALF_LENGTH_M - VS_GOAL_DEPTH_M / 2, end_y},
-      {"end_3", -VS_FIELD_HALF_LENGTH_M - VS_GOAL_DEPTH_M / 2, -end_y},
-      {"end_4", VS_FIELD_HALF_LENGTH_M + VS_GOAL_DEPTH_M / 2, -end_y},
+      {"end_1", goal_end, end_y},
+      {"end_2", -goal_end, end_y},
+      {"end_3", -goal_end, -end_y},
+      {"end_4", goal_end, -end_y},
   };
   for (size_t i = 0; i < sizeof wall / sizeof *wall; i++) {
     int geom;
@@ -171,7 +171,7 @@ static vs_status check_field(const mjModel *mj, const char *path, vs_error *err)
     TRY(expect(path, wall[i].name, "y", mj->geom_pos[3 * geom + 1], wall[i].y, 1e-9, err));
     if (mj->geom_type[geom] != mjGEOM_BOX) continue;
     const double *half = mj->geom_size + 3 * geom;
-    TRY(expect(path, wall[i].name, "half depth", half[0], VS_GOAL_DEPTH_M / 2, 1e-9, err));
+    TRY(expect(path, wall[i].name, "half depth", half[0], VS_GOAL_DEPTH_M, 1e-9, err));
     TRY(expect(path, wall[i].name, "half width", half[1], (VS_FIELD_HALF_WIDTH_M - VS_GOAL_HALF_WIDTH_M) / 2, 1e-9,
                err));
   }
