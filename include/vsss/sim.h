@@ -38,7 +38,8 @@ typedef struct vs_sim_params {
   double wheel_gain[VS_TEAMS][VS_TEAM_SIZE][2];      // left, right: reached speed / commanded speed; 1
   double wheel_radius_scale[VS_TEAMS][VS_TEAM_SIZE]; // 1
   double track_scale[VS_TEAMS][VS_TEAM_SIZE];        // 1
-  double com_offset_m[VS_TEAMS][VS_TEAM_SIZE][2];    // centre of mass off the middle: forward, left; 0
+  double com_offset_m[VS_TEAMS][VS_TEAM_SIZE][2];    // centre of mass off the middle: forward, left (planar:
+                                                     // its effect on the wheels' loads only); 0
   double wheel_limit_scale;                          // battery: scales VS_WHEEL_LIMIT_RADPS; 1
   double motor_tau_s;                                // extra first-order lag of the wheel command; 0 = none
   double dead_zone_radps;                            // commands below this do nothing; 0

@@ -24,6 +24,7 @@ double vs_drive_target(const vs_sim_params *params, int robot, int side, double 
 typedef struct traction {
   double dt, mass, inertia, friction, radius, half_track;
   double u, s, w;                // velocities at the end of the step without friction: other forces included
+  double com_u, com_s;           // centre of mass off the middle
   double push_u, push_s;         // contact forces of the last step, no more than the robot's weight
   double rim[SIDES];             // rim speeds at the end of the step without friction
   double keep[SIDES], keep_s;    // slip that may be left at the end of the step: forward at each wheel, sideways
@@ -54,10 +55,11 @@ static void full_grip(traction *t) {
 // from the inner one in a curve. Pushes meet the robot near the floor, as friction does: a robot rocks back from what it
 // pushes until its lower edge touches.
 static void wheel_loads(const traction *t, double load[SIDES]) {
-  double skid = fabs(t->along[LEFT] + t->along[RIGHT] + t->push_u) * COM_HEIGHT_M / SKID_DISTANCE_M;
-  double wheels = fmax(0, t->mass * GRAVITY_MPS2 - skid);
-  double shift = (t->sideways + t->push_s) * COM_HEIGHT_M / (2 * t->half_track);
-  shift = vs_clamp(shift, -wheels / 2, wheels / 2);
+  double weight = t->mass * GRAVITY_MPS2;
+  double tip = (t->along[LEFT] + t->along[RIGHT] + t->push_u) * COM_HEIGHT_M - weight * t->com_u;
+  double wheels = fmax(0, weight - fabs(tip) / SKID_DISTANCE_M);
+  double roll = (t->sideways + t->push_s) * COM_HEIGHT_M - weight * t->com_s;
+  double shift = vs_clamp(roll / (2 * t->half_track), -wheels / 2, wheels / 2);
   load[LEFT] = wheels / 2 - shift;
   load[RIGHT] = wheels / 2 + shift;
 }
@@ -107,13 +109,15 @@ static void step_planar_robot(vs_sim *sim, int index) {
   const double *v = d->qvel + address->qvel, *push = d->qfrc_constraint + address->qvel; // contacts of the last step
   double *applied = d->qfrc_applied + address->qvel;
   wheel_state *wheel = sim->wheel[index];
+  int team = index / VS_TEAM_SIZE, i = index % VS_TEAM_SIZE;
   traction t = {.dt = sim->mj->opt.timestep,
                 .mass = sim->mj->body_mass[address->body],
                 .inertia = sim->mj->body_inertia[3 * address->body + 2],
                 .friction = WHEEL_FRICTION * sim->params.floor_friction_scale,
-                .radius =
-                    VS_WHEEL_RADIUS_M * sim->params.wheel_radius_scale[index / VS_TEAM_SIZE][index % VS_TEAM_SIZE],
-                .half_track = VS_HALF_TRACK_M * sim->params.track_scale[index / VS_TEAM_SIZE][index % VS_TEAM_SIZE]};
+                .radius = VS_WHEEL_RADIUS_M * sim->params.wheel_radius_scale[team][i],
+                .half_track = VS_HALF_TRACK_M * sim->params.track_scale[team][i],
+                .com_u = sim->params.com_offset_m[team][i][0],
+                .com_s = sim->params.com_offset_m[team][i][1]};
   // Half a step back: the velocity found is held while the robot turns on, and its mean slip should be right.
   double heading = d->qpos[address->qpos + 2] - 0.5 * t.dt * v[2];
   double c = cos(heading), n = sin(heading);

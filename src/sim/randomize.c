@@ -28,6 +28,8 @@ static void scale_body(mjModel *own, const mjModel *from, int body, double scale
   for (int i = 0; i < from->body_dofnum[body]; i++) {
     int dof = from->body_dofadr[body] + i;
     own->dof_invweight0[dof] = from->dof_invweight0[dof] / scale;
+    // The inertia of simple bodies is taken from here.
+    own->dof_M0[dof] = (from->dof_M0[dof] - from->dof_armature[dof]) * scale + from->dof_armature[dof];
   }
 }
 
@@ -70,10 +72,10 @@ static void set_robot(vs_sim *sim, int i) {
   const robot_address *address = &sim->model->robot[i];
   int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE, body = address->body;
   scale_body(sim->own, from, body, p->robot_mass_scale);
+  if (sim->model->drive == VS_DRIVE_PLANAR) return; // drive.c reads the rest from params
   for (int axis = 0; axis < 2; axis++) {
     sim->own->body_ipos[3 * body + axis] = from->body_ipos[3 * body + axis] + p->com_offset_m[team][index][axis];
   }
-  if (sim->model->drive == VS_DRIVE_PLANAR) return;
   for (int side = LEFT; side < SIDES; side++) {
     int wheel = from->dof_bodyid[address->wheel_qvel[side]];
     scale_body(sim->own, from, wheel, p->robot_mass_scale);

@@ -92,6 +92,7 @@ static void set_upright(double *qpos, vs_pose pose) {
 
 void vs_sim_place(vs_sim *sim, const vs_world *world) {
   stop_everything(sim);
+  memcpy(sim->data->qpos, sim->mj->qpos0, sizeof(double) * sim->mj->nq); // the wheels' angles too
   for (int i = 0; i < ROBOTS; i++) {
     vs_pose pose = world->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE].pose;
     double *qpos = sim->data->qpos + sim->model->robot[i].qpos;
