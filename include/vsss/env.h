@@ -56,8 +56,10 @@ vs_status vs_env_set_player(vs_env *env, vs_team team, const char *uri, vs_error
 
 bool vs_env_over(const vs_env *env);
 void vs_env_truth(const vs_env *env, vs_world *out);
+void vs_env_judged(const vs_env *env, vs_world *out);   // the truth at the end of the last frame, before a placement
 void vs_env_measured(const vs_env *env, vs_world *out); // what both teams saw last
 void vs_env_wheels(const vs_env *env, vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]);
+bool vs_env_decided(const vs_env *env, vs_team team); // the last frame was a decision of this team's player
 const vs_game *vs_env_game(const vs_env *env);
 vs_control *vs_env_control(vs_env *env, vs_team team);
 vs_sim *vs_env_sim(vs_env *env);

@@ -56,7 +56,7 @@ typedef struct vs_series_summary {
   double penalties_for, penalties_against, free_balls, goal_kicks;
   double mean_time_s;
 } vs_series_summary;
-void vs_series_sum_up(const vs_match_result *results, int n, vs_series_summary *out);
+vs_status vs_series_sum_up(const vs_match_result *results, int n, vs_series_summary *out, vs_error *err);
 
 // Elo ratings of n players from points[i * n + j] = matches i won against j plus half the draws, games[i * n + j] =
 // matches between them (symmetric). Maximum likelihood with one virtual draw for each pair that played, so that a

@@ -13,6 +13,8 @@ typedef struct command {
 } command;
 
 static const command commands[] = {
+    {"sim", cmd_sim, "play matches in the simulator"},
+    {"eval", cmd_eval, "statistics over many matches between any two players"},
     {"calibrate", cmd_calibrate, "make the file that turns pixels into metres; print tags"},
     {"detect", cmd_detect, "find tags in a picture and print their corners"},
     {"field", cmd_field, "play on a real field: camera, policy, radio"},

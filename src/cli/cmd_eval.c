@@ -1,0 +1,312 @@
+// vsss eval: many matches of one player against others, or of all against all, with intervals and ratings.
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "commands.h"
+#include "report.h"
+#include "vsss/clock.h"
+
+enum { MAX_PLAYERS = 32 };
+
+// One row of the table: blue against yellow.
+typedef struct pairing {
+  const char *uri[VS_TEAMS];
+  int player[VS_TEAMS]; // in the round robin
+  vs_match_result *results;
+  vs_series_summary summary;
+} pairing;
+
+typedef struct eval_command {
+  vs_match_flags match;
+  const char *blue, *against, *round_robin, *json, *csv;
+  int matches;
+
+  char *names; // the split list
+  const char *player[MAX_PLAYERS];
+  int players;
+  pairing *pairings;
+  int count, current; // pairings, the one being played
+  vs_match_result *results;
+  int done; // matches of all pairings
+  vs_progress progress;
+} eval_command;
+
+// "random:,inf:" -> player[]. A comma inside a URI cannot be written.
+static vs_status split(eval_command *c, const char *flag, const char *list, int least, vs_error *err) {
+  c->names = strdup(list);
+  if (!c->names) return vs_fail(err, VS_FAIL, "out of memory");
+  char *rest = c->names;
+  for (char *one; (one = strsep(&rest, ",")) != NULL;) {
+    if (!*one) return vs_fail(err, VS_USAGE, "--%s %s: an empty name; write URI,URI,...", flag, list);
+    if (c->players == MAX_PLAYERS) return vs_fail(err, VS_USAGE, "--%s: more than %d players", flag, MAX_PLAYERS);
+    c->player[c->players++] = one;
+  }
+  if (c->players < least) return vs_fail(err, VS_USAGE, "--%s %s: at least %d players", flag, list, least);
+  return VS_OK;
+}
+
+static void add_pairing(eval_command *c, const char *blue, int blue_index, int yellow_index) {
+  c->pairings[c->count] = (pairing){.uri = {blue, c->player[yellow_index]},
+                                    .player = {blue_index, yellow_index},
+                                    .results = c->results + (size_t)c->count * (size_t)c->matches};
+  c->count++;
+}
+
+static vs_status make_pairings(eval_command *c, vs_error *err) {
+  vs_status s =
+      c->round_robin ? split(c, "round-robin", c->round_robin, 2, err) : split(c, "against", c->against, 1, err);
+  if (s != VS_OK) return s;
+  size_t most = (size_t)c->players * (size_t)c->players;
+  c->pairings = calloc(most, sizeof *c->pairings);
+  c->results = calloc(most * (size_t)c->matches, sizeof *c->results);
+  if (!c->pairings || !c->results) return vs_fail(err, VS_FAIL, "out of memory for %d matches", c->matches);
+  for (int j = 0; j < c->players; j++) {
+    if (!c->round_robin) add_pairing(c, c->blue, -1, j);
+    for (int i = 0; c->round_robin && i < c->players; i++)
+      if (i != j) add_pairing(c, c->player[i], i, j);
+  }
+  return VS_OK;
+}
+
+static bool go_on(void *context) {
+  (void)context;
+  return !vs_cli_interrupted();
+}
+
+static bool match_done(void *context, int index, const vs_match_result *result) {
+  (void)index;
+  eval_command *c = context;
+  const pairing *p = &c->pairings[c->current];
+  c->done++;
+  char text[200];
+  snprintf(text, sizeof text, "%d of %d matches  %s %d : %d %s", c->done, c->count * c->matches, p->uri[VS_BLUE],
+           result->score[VS_BLUE], result->score[VS_YELLOW], p->uri[VS_YELLOW]);
+  vs_progress_show(&c->progress, (double)c->done / ((double)c->count * c->matches), text);
+  return !vs_cli_interrupted();
+}
+
+static vs_status play_pairing(eval_command *c, const vs_env_def *env, vs_error *err) {
+  pairing *p = &c->pairings[c->current];
+  vs_series_def def = {.env = *env,
+                       .matches = c->matches,
+                       .threads = c->match.threads,
+                       .seed = (uint64_t)c->match.seed,
+                       .progress = match_done,
+                       .go_on = go_on,
+                       .context = c};
+  for (int t = 0; t < VS_TEAMS; t++) def.env.player[t] = p->uri[t];
+  vs_status s = vs_series_play(&def, p->results, err);
+  if (s == VS_OK) return vs_series_sum_up(p->results, c->matches, &p->summary, err);
+  return vs_fail_prefix(err, "%s against %s", p->uri[VS_BLUE], p->uri[VS_YELLOW]);
+}
+
+// A URI that does not open should fail before the first match, not after an hour of them.
+static vs_status check_players(const eval_command *c, vs_error *err) {
+  for (int i = -1; i < c->players; i++) {
+    const char *uri = i < 0 ? c->blue : c->player[i];
+    if (i < 0 && c->round_robin) continue;
+    vs_player *player = NULL;
+    vs_status s = vs_player_open(uri, &player, err);
+    if (s != VS_OK) return s;
+    vs_player_close(player);
+  }
+  return VS_OK;
+}
+
+static void print_pairings(const eval_command *c) {
+  printf("\n");
+  vs_report_table_head(stdout);
+  for (int i = 0; i < c->count; i++)
+    if (c->pairings[i].summary.matches > 0)
+      vs_report_table_row(stdout, c->pairings[i].uri[VS_YELLOW], &c->pairings[i].summary);
+  printf("\n");
+  vs_report_restarts_head(stdout);
+  for (int i = 0; i < c->count; i++)
+    if (c->pairings[i].summary.matches > 0)
+      vs_report_restarts_row(stdout, c->pairings[i].uri[VS_YELLOW], &c->pairings[i].summary);
+}
+
+// Elo of the players from all matches played. rating: MAX_PLAYERS doubles.
+static void rate(const eval_command *c, double *rating) {
+  double points[MAX_PLAYERS * MAX_PLAYERS] = {0};
+  int games[MAX_PLAYERS * MAX_PLAYERS] = {0};
+  for (int k = 0; k < c->count; k++) {
+    const pairing *p = &c->pairings[k];
+    if (p->summary.matches == 0) continue;
+    int blue = p->player[VS_BLUE] * c->players + p->player[VS_YELLOW];
+    int yellow = p->player[VS_YELLOW] * c->players + p->player[VS_BLUE];
+    double won = (p->summary.win.mean + 0.5 * p->summary.draw.mean) * p->summary.matches;
+    points[blue] += won;
+    points[yellow] += p->summary.matches - won;
+    games[blue] += p->summary.matches;
+    games[yellow] += p->summary.matches;
+  }
+  vs_elo(c->players, points, games, rating);
+}
+
+static const pairing *find_pairing(const eval_command *c, int blue, int yellow) {
+  for (int k = 0; k < c->count; k++)
+    if (c->pairings[k].player[VS_BLUE] == blue && c->pairings[k].player[VS_YELLOW] == yellow) return &c->pairings[k];
+  return NULL;
+}
+
+static void print_cross_table(const eval_command *c) {
+  double rating[MAX_PLAYERS];
+  rate(c, rating);
+  printf("\nwin/draw/loss %% and score of the row as blue against the column as yellow\n\n%-16s", "");
+  for (int j = 0; j < c->players; j++) printf("  %-20.20s", c->player[j]);
+  printf("  %6s\n", "Elo");
+  for (int i = 0; i < c->players; i++) {
+    printf("%-16s", c->player[i]);
+    for (int j = 0; j < c->players; j++) {
+      const pairing *p = find_pairing(c, i, j);
+      char cell[64] = "";
+      if (p && p->summary.matches > 0)
+        snprintf(cell, sizeof cell, "%.0f/%.0f/%.0f %+.2f", 100 * p->summary.win.mean, 100 * p->summary.draw.mean,
+                 100 * p->summary.loss.mean, p->summary.score.mean);
+      printf("  %-20s", cell);
+    }
+    printf("  %6.0f\n", rating[i]);
+  }
+}
+
+static vs_status open_output(const char *path, FILE **out, vs_error *err) {
+  *out = fopen(path, "w");
+  if (*out) return VS_OK;
+  return vs_fail(err, VS_FAIL, "%s: cannot be written: %s", path, strerror(errno));
+}
+
+static vs_status close_output(FILE *out, const char *path, vs_error *err) {
+  bool bad = ferror(out) != 0;
+  if (fclose(out) != 0) bad = true;
+  return bad ? vs_fail(err, VS_FAIL, "%s: cannot be written: %s", path, strerror(errno)) : VS_OK;
+}
+
+static vs_status write_csv(const eval_command *c, FILE *out, vs_error *err) {
+  vs_report_csv_head(out);
+  for (int i = 0; i < c->count; i++)
+    if (c->pairings[i].summary.matches > 0)
+      vs_report_csv_row(out, c->pairings[i].uri[VS_BLUE], c->pairings[i].uri[VS_YELLOW], &c->pairings[i].summary);
+  return close_output(out, c->csv, err);
+}
+
+static void write_ratings(const eval_command *c, FILE *out) {
+  double rating[MAX_PLAYERS];
+  rate(c, rating);
+  fprintf(out, "\"elo\": {");
+  for (int i = 0; i < c->players; i++) {
+    fprintf(out, "%s", i ? ", " : "");
+    vs_report_json_text(out, c->player[i]);
+    fprintf(out, ": %.2f", rating[i]);
+  }
+  fprintf(out, "},\n");
+}
+
+static vs_status write_json(const eval_command *c, FILE *out, vs_error *err) {
+  fprintf(out, "{\"command\": \"eval\", ");
+  vs_report_json_flags(out, &c->match);
+  fprintf(out, ", \"complete\": %s,\n", c->done == c->count * c->matches ? "true" : "false");
+  if (c->round_robin) write_ratings(c, out);
+  fprintf(out, "\"series\": [");
+  const char *separator = "";
+  for (int i = 0; i < c->count; i++) {
+    const pairing *p = &c->pairings[i];
+    if (p->summary.matches == 0) continue;
+    fprintf(out, "%s\n{\"blue\": ", separator);
+    vs_report_json_text(out, p->uri[VS_BLUE]);
+    fprintf(out, ", \"yellow\": ");
+    vs_report_json_text(out, p->uri[VS_YELLOW]);
+    fprintf(out, ",\n \"summary\": ");
+    vs_report_json_summary(out, &p->summary);
+    fprintf(out, ",\n \"matches\": ");
+    vs_report_json_matches(out, p->results, c->matches);
+    fprintf(out, "}");
+    separator = ",";
+  }
+  fprintf(out, "]}\n");
+  return close_output(out, c->json, err);
+}
+
+static void print_head(const eval_command *c) {
+  char about[160];
+  vs_match_flags_describe(&c->match, about, sizeof about);
+  if (c->round_robin)
+    printf("round robin of %d players, %d matches as blue and as yellow in each pairing: %s\n", c->players, c->matches,
+           about);
+  else
+    printf("%s as blue, %d matches against each: %s\n", c->blue, c->matches, about);
+  printf("blue attacks +x and kicks off first; sides are not swapped; a match ends at 10 goals' difference\n");
+  fflush(stdout);
+}
+
+static vs_status evaluate(eval_command *c, const vs_env_def *env, FILE *json, FILE *csv, vs_error *err) {
+  print_head(c);
+  int64_t start_us = vs_clock_monotonic_us();
+  vs_progress_start(&c->progress);
+  vs_status played = VS_OK;
+  for (c->current = 0; c->current < c->count && played == VS_OK && !vs_cli_interrupted(); c->current++)
+    played = play_pairing(c, env, err);
+  vs_progress_clear(&c->progress);
+
+  // What is done is shown and written even when a match failed.
+  c->round_robin ? print_cross_table(c) : print_pairings(c);
+  if (c->done < c->count * c->matches) printf("\nstopped: %d of %d matches\n", c->done, c->count * c->matches);
+  double played_s = 0.0, wall_s = (double)(vs_clock_monotonic_us() - start_us) * 1e-6;
+  for (int i = 0; i < c->count; i++) played_s += c->pairings[i].summary.mean_time_s * c->pairings[i].summary.matches;
+  printf("\n%.0f s played in %.1f s (%.0f times real time)\n", played_s, wall_s, played_s / wall_s);
+  vs_status s = VS_OK;
+  if (json) s = write_json(c, json, err);
+  if (csv) {
+    vs_status t = write_csv(c, csv, err);
+    if (s == VS_OK) s = t;
+  }
+  return played != VS_OK ? played : s;
+}
+
+static vs_status run(eval_command *c, vs_error *err) {
+  if (c->round_robin && c->against) return vs_fail(err, VS_USAGE, "--round-robin and --against exclude each other");
+  if (!c->against) c->against = "random:,inf:,emc:";
+  vs_status s = make_pairings(c, err);
+  if (s == VS_OK) s = check_players(c, err);
+  vs_model *model = NULL;
+  vs_env_def env;
+  if (s == VS_OK) s = vs_match_flags_open(&c->match, &model, &env, err);
+  // Opened first: a path that cannot be written is told before the matches.
+  FILE *json = NULL, *csv = NULL;
+  if (s == VS_OK && c->json) s = open_output(c->json, &json, err);
+  if (s == VS_OK && c->csv) s = open_output(c->csv, &csv, err);
+  if (s == VS_OK) {
+    vs_cli_catch_interrupts();
+    s = evaluate(c, &env, json, csv, err);
+  }
+  vs_model_free(model);
+  return s;
+}
+
+int cmd_eval(int argc, char **argv) {
+  eval_command c = {.match = vs_match_flags_default(), .blue = "emc:", .matches = 100};
+  const vs_flag flags[] = {
+      {"blue", VS_FLAG_TEXT, &c.blue, "URI", "the player that is measured", 0, 0},
+      {"against", VS_FLAG_TEXT, &c.against, "URI,...", "its opponents, all yellow [random:,inf:,emc:]", 0, 0},
+      {"round-robin", VS_FLAG_TEXT, &c.round_robin, "URI,...", "all against all, from both sides: cross table, Elo", 0,
+       0},
+      {"matches", VS_FLAG_INT, &c.matches, "N", "of each pairing", 1, 1000000},
+      VS_MATCH_FLAG_ROWS(c.match),
+      {"json", VS_FLAG_TEXT, &c.json, "FILE", "also write everything there, each match with its hash", 0, 0},
+      {"csv", VS_FLAG_TEXT, &c.csv, "FILE", "also write the table there", 0, 0},
+      {NULL, VS_FLAG_SWITCH, NULL, NULL, NULL, 0, 0},
+  };
+  bool help;
+  vs_error err = {0};
+  vs_status s = vs_args_parse(argc, argv, "eval [flags]",
+                              "Plays many matches and prints win, draw and loss rates, goals and score, each with its\n"
+                              "bootstrap 95 % interval.",
+                              flags, NULL, &help, &err);
+  if (help) return 0;
+  if (s == VS_OK) s = run(&c, &err);
+  free(c.names);
+  free(c.pairings);
+  free(c.results);
+  return s == VS_OK ? 0 : vs_cli_error("eval", &err);
+}

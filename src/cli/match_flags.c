@@ -1,0 +1,42 @@
+#include "match_flags.h"
+
+#include <stdio.h>
+#include <unistd.h>
+
+vs_match_flags vs_match_flags_default(void) {
+  long processors = sysconf(_SC_NPROCESSORS_ONLN);
+  return (vs_match_flags){.drive = "contact",
+                          .rules = "paper",
+                          .placement = "paper",
+                          .seconds = 120,
+                          .seed = 1,
+                          .threads = processors > 0 ? (int)processors : 1};
+}
+
+vs_status vs_match_flags_open(const vs_match_flags *flags, vs_model **model, vs_env_def *env, vs_error *err) {
+  vs_drive drive;
+  vs_rules rules;
+  vs_placement_mode placement;
+  vs_realism realism = vs_realism_default();
+  vs_status s = vs_drive_parse(flags->drive, &drive, err);
+  if (s == VS_OK) s = vs_rules_parse(flags->rules, &rules, err);
+  if (s == VS_OK) s = vs_placement_parse(flags->placement, &placement, err);
+  if (s == VS_OK && flags->realism) s = vs_realism_load(flags->realism, &realism, err);
+  if (s != VS_OK) return s;
+
+  vs_model_def model_def = vs_model_def_default(drive);
+  s = vs_model_load(&model_def, model, err);
+  if (s != VS_OK) return s;
+  *env = vs_env_def_default(*model);
+  env->referee = vs_referee_def_default(rules);
+  env->referee.placement = placement;
+  env->referee.duration_s = flags->seconds;
+  env->realism = realism;
+  return VS_OK;
+}
+
+void vs_match_flags_describe(const vs_match_flags *flags, char *out, size_t size) {
+  snprintf(out, size, "%s drive, %s rules, %s placement, %g s, seed %d%s%s", flags->drive, flags->rules,
+           flags->placement, flags->seconds, flags->seed, flags->realism ? ", realism " : "",
+           flags->realism ? flags->realism : "");
+}

@@ -1,0 +1,33 @@
+// The flags that say what a match is, shared by the commands that play some.
+#ifndef VSSS_CLI_MATCH_FLAGS_H
+#define VSSS_CLI_MATCH_FLAGS_H
+
+#include "cli.h"
+#include "vsss/env.h"
+
+typedef struct vs_match_flags {
+  const char *drive, *rules, *placement, *realism;
+  double seconds;
+  int seed, threads;
+} vs_match_flags;
+
+vs_match_flags vs_match_flags_default(void); // contact drive, paper rules, 120 s, seed 1, a thread for each processor
+
+// Rows for a command's flag table; m is a vs_match_flags.
+#define VS_MATCH_FLAG_ROWS(m)                                                                                          \
+  {"seconds", VS_FLAG_REAL, &(m).seconds, "S", "length of a match, simulated", 1, 7200},                               \
+      {"seed", VS_FLAG_INT, &(m).seed, "N", "same seed, same matches, for any number of threads", 0, 2147483647},      \
+      {"threads", VS_FLAG_INT, &(m).threads, "N", "matches played at a time", 1, 1024},                                \
+      {"drive", VS_FLAG_TEXT, &(m).drive, "NAME", "contact (the reference) or planar (the fast twin)", 0, 0},          \
+      {"rules", VS_FLAG_TEXT, &(m).rules, "NAME", "paper or league", 0, 0},                                            \
+      {"placement", VS_FLAG_TEXT, &(m).placement, "NAME", "of restarts: paper or random", 0, 0}, {                     \
+    "realism", VS_FLAG_TEXT, &(m).realism, "FILE", "sensor and actuator model (INI); default: the paper's noise", 0, 0 \
+  }
+
+// Loads the model and fills env, whose players are left NULL. The caller frees the model.
+vs_status vs_match_flags_open(const vs_match_flags *flags, vs_model **model, vs_env_def *env, vs_error *err);
+
+// "contact drive, paper rules, 120 s, seed 1"
+void vs_match_flags_describe(const vs_match_flags *flags, char *out, size_t size);
+
+#endif

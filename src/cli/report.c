@@ -1,0 +1,165 @@
+#include "report.h"
+
+#include <math.h>
+#include <string.h>
+
+// One estimate as "56.0 [46.0, 66.0]" in a column of fixed width.
+static void cell(FILE *out, const vs_estimate *e, double scale, int digits, int width) {
+  char text[64];
+  snprintf(text, sizeof text, "%.*f [%.*f, %.*f]", digits, scale * e->mean, digits, scale * e->low, digits,
+           scale * e->high);
+  fprintf(out, "  %-*s", width, e->mean == e->mean ? text : "-");
+}
+
+void vs_report_table_head(FILE *out) {
+  fprintf(out, "%-14s %7s  %-20s  %-20s  %-20s  %-18s  %-18s  %s\n", "against", "matches", "win % [95 %]", "draw %",
+          "loss %", "goals for", "goals against", "score");
+}
+
+void vs_report_table_row(FILE *out, const char *against, const vs_series_summary *s) {
+  fprintf(out, "%-14s %7d", against, s->matches);
+  cell(out, &s->win, 100, 1, 20);
+  cell(out, &s->draw, 100, 1, 20);
+  cell(out, &s->loss, 100, 1, 20);
+  cell(out, &s->goals_for, 1, 2, 18);
+  cell(out, &s->goals_against, 1, 2, 18);
+  cell(out, &s->score, 1, 2, 0);
+  fprintf(out, "\n");
+}
+
+void vs_report_restarts_head(FILE *out) {
+  fprintf(out, "%-14s %13s %17s %10s %10s %9s\n", "a match", "penalties for", "penalties against", "free balls",
+          "goal kicks", "seconds");
+}
+
+void vs_report_restarts_row(FILE *out, const char *against, const vs_series_summary *s) {
+  fprintf(out, "%-14s %13.2f %17.2f %10.2f %10.2f %9.1f\n", against, s->penalties_for, s->penalties_against,
+          s->free_balls, s->goal_kicks, s->mean_time_s);
+}
+
+typedef struct column {
+  const char *name;
+  vs_estimate value;
+} column;
+
+enum { COLUMNS = 6 };
+static void columns_of(const vs_series_summary *s, column out[COLUMNS]) {
+  const column all[COLUMNS] = {{"win", s->win},
+                               {"draw", s->draw},
+                               {"loss", s->loss},
+                               {"goals_for", s->goals_for},
+                               {"goals_against", s->goals_against},
+                               {"score", s->score}};
+  memcpy(out, all, sizeof all);
+}
+
+void vs_report_csv_head(FILE *out) {
+  vs_series_summary none = {0};
+  column c[COLUMNS];
+  columns_of(&none, c);
+  fprintf(out, "blue,yellow,matches");
+  for (int i = 0; i < COLUMNS; i++) fprintf(out, ",%s,%s_low,%s_high", c[i].name, c[i].name, c[i].name);
+  fprintf(out, ",penalties_for,penalties_against,free_balls,goal_kicks,mean_time_s\n");
+}
+
+// A field of a CSV file: quoted where it holds a comma or a quote.
+static void csv_text(FILE *out, const char *text) {
+  if (!strpbrk(text, ",\"\n")) {
+    fprintf(out, "%s", text);
+    return;
+  }
+  fputc('"', out);
+  for (; *text; text++) fprintf(out, *text == '"' ? "\"\"" : "%c", *text);
+  fputc('"', out);
+}
+
+void vs_report_csv_row(FILE *out, const char *blue, const char *yellow, const vs_series_summary *s) {
+  csv_text(out, blue);
+  fputc(',', out);
+  csv_text(out, yellow);
+  fprintf(out, ",%d", s->matches);
+  column c[COLUMNS];
+  columns_of(s, c);
+  for (int i = 0; i < COLUMNS; i++) fprintf(out, ",%.6g,%.6g,%.6g", c[i].value.mean, c[i].value.low, c[i].value.high);
+  fprintf(out, ",%.6g,%.6g,%.6g,%.6g,%.6g\n", s->penalties_for, s->penalties_against, s->free_balls, s->goal_kicks,
+          s->mean_time_s);
+}
+
+void vs_report_json_text(FILE *out, const char *text) {
+  fputc('"', out);
+  for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
+    if (*c == '"' || *c == '\\')
+      fprintf(out, "\\%c", *c);
+    else if (*c < 0x20)
+      fprintf(out, "\\u%04x", *c);
+    else
+      fputc(*c, out);
+  }
+  fputc('"', out);
+}
+
+static void json_number(FILE *out, const char *name, double value) {
+  if (isfinite(value))
+    fprintf(out, "\"%s\": %.9g", name, value);
+  else
+    fprintf(out, "\"%s\": null", name);
+}
+
+void vs_report_json_flags(FILE *out, const vs_match_flags *flags) {
+  fprintf(out,
+          "\"drive\": \"%s\", \"rules\": \"%s\", \"placement\": \"%s\", \"seconds\": %g, \"seed\": %d, \"realism\": ",
+          flags->drive, flags->rules, flags->placement, flags->seconds, flags->seed);
+  if (flags->realism)
+    vs_report_json_text(out, flags->realism);
+  else
+    fprintf(out, "null");
+}
+
+void vs_report_json_match(FILE *out, const vs_match_result *m) {
+  fprintf(out, "{\"seed\": \"%016llx\", \"hash\": \"%016llx\", ", (unsigned long long)m->seed,
+          (unsigned long long)m->hash);
+  json_number(out, "time_s", m->time_s);
+  fprintf(out, ", \"finished\": %s, \"score\": [%d, %d]", m->played ? "true" : "false", m->score[VS_BLUE],
+          m->score[VS_YELLOW]);
+  fprintf(out, ", \"penalties\": [%d, %d], \"free_balls\": %d, \"goal_kicks\": [%d, %d]}",
+          m->events[VS_BLUE][VS_EVENT_PENALTY], m->events[VS_YELLOW][VS_EVENT_PENALTY],
+          m->events[VS_BLUE][VS_EVENT_FREE_BALL] + m->events[VS_YELLOW][VS_EVENT_FREE_BALL],
+          m->events[VS_BLUE][VS_EVENT_GOAL_KICK], m->events[VS_YELLOW][VS_EVENT_GOAL_KICK]);
+}
+
+void vs_report_json_matches(FILE *out, const vs_match_result *results, int n) {
+  const char *separator = "";
+  fprintf(out, "[");
+  for (int i = 0; i < n; i++) {
+    if (results[i].time_s <= 0.0) continue;
+    fprintf(out, "%s", separator);
+    vs_report_json_match(out, &results[i]);
+    separator = ",\n  ";
+  }
+  fprintf(out, "]");
+}
+
+void vs_report_json_summary(FILE *out, const vs_series_summary *s) {
+  column c[COLUMNS];
+  columns_of(s, c);
+  fprintf(out, "{\"matches\": %d", s->matches);
+  for (int i = 0; i < COLUMNS; i++) {
+    fprintf(out, ", \"%s\": {", c[i].name);
+    json_number(out, "mean", c[i].value.mean);
+    fprintf(out, ", ");
+    json_number(out, "low", c[i].value.low);
+    fprintf(out, ", ");
+    json_number(out, "high", c[i].value.high);
+    fprintf(out, "}");
+  }
+  const column rest[] = {{"penalties_for", {s->penalties_for, 0, 0}},
+                         {"penalties_against", {s->penalties_against, 0, 0}},
+                         {"free_balls", {s->free_balls, 0, 0}},
+                         {"goal_kicks", {s->goal_kicks, 0, 0}},
+                         {"mean_time_s", {s->mean_time_s, 0, 0}}};
+  for (size_t i = 0; i < sizeof rest / sizeof *rest; i++) {
+    fprintf(out, ", ");
+    json_number(out, rest[i].name, rest[i].value.mean);
+  }
+  fprintf(out, "}");
+}

@@ -1,0 +1,116 @@
+// Many matches over threads, each a function of its own seed.
+#include "vsss/eval.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+void vs_match_count(vs_match_result *result, const vs_event *event) { result->events[event->team][event->kind]++; }
+
+vs_status vs_match_play(vs_env *env, uint64_t seed, bool (*go_on)(void *context), void *context, vs_match_result *out,
+                        vs_error *err) {
+  memset(out, 0, sizeof *out);
+  out->seed = seed;
+  vs_status s = vs_env_reset(env, seed, err);
+  if (s != VS_OK) return s;
+  for (int frame = 1; !vs_env_over(env); frame++) {
+    vs_event event;
+    s = vs_env_frame(env, &event, err);
+    if (s != VS_OK) return s;
+    vs_match_count(out, &event);
+    if (go_on && frame % VS_CAMERA_HZ == 0 && !go_on(context)) return VS_OK;
+  }
+  const vs_game *game = vs_env_game(env);
+  memcpy(out->score, game->score, sizeof out->score);
+  out->time_s = game->time_s;
+  out->hash = vs_env_hash(env);
+  out->played = true;
+  return VS_OK;
+}
+
+// What the threads of one series share.
+typedef struct series {
+  const vs_series_def *def;
+  vs_match_result *results;
+  pthread_mutex_t lock;
+  int next; // match to take
+  bool stop;
+  vs_error error; // the first
+} series;
+
+static void stop_with(series *s, const vs_error *error) {
+  pthread_mutex_lock(&s->lock);
+  s->stop = true;
+  if (error && s->error.status == VS_OK) s->error = *error;
+  pthread_mutex_unlock(&s->lock);
+}
+
+static bool asked_to_go_on(void *context) {
+  series *s = context;
+  pthread_mutex_lock(&s->lock);
+  if (!s->stop && s->def->go_on && !s->def->go_on(s->def->context)) s->stop = true;
+  bool stop = s->stop;
+  pthread_mutex_unlock(&s->lock);
+  return !stop;
+}
+
+// The next match to play, or -1.
+static int take(series *s) {
+  pthread_mutex_lock(&s->lock);
+  int index = s->stop || s->next == s->def->matches ? -1 : s->next++;
+  pthread_mutex_unlock(&s->lock);
+  return index;
+}
+
+static void report(series *s, int index) {
+  pthread_mutex_lock(&s->lock);
+  const vs_series_def *def = s->def;
+  if (def->progress && !s->stop && !def->progress(def->context, index, &s->results[index])) s->stop = true;
+  pthread_mutex_unlock(&s->lock);
+}
+
+static void *play(void *argument) {
+  series *s = argument;
+  vs_error error = {0};
+  vs_env *env = NULL;
+  if (vs_env_new(&s->def->env, &env, &error) != VS_OK) {
+    stop_with(s, &error);
+    return NULL;
+  }
+  for (int index; (index = take(s)) >= 0;) {
+    vs_match_result *result = &s->results[index];
+    if (vs_match_play(env, vs_seed_mix(s->def->seed, (uint64_t)index), asked_to_go_on, s, result, &error) != VS_OK) {
+      stop_with(s, &error);
+      break;
+    }
+    if (result->played) report(s, index);
+  }
+  vs_env_free(env);
+  return NULL;
+}
+
+vs_status vs_series_play(const vs_series_def *def, vs_match_result *results, vs_error *err) {
+  if (def->matches < 1) return vs_fail(err, VS_USAGE, "matches %d: at least 1", def->matches);
+  if (def->threads < 1) return vs_fail(err, VS_USAGE, "threads %d: at least 1", def->threads);
+  memset(results, 0, (size_t)def->matches * sizeof *results);
+  int threads = def->threads < def->matches ? def->threads : def->matches;
+  pthread_t *thread = calloc((size_t)threads, sizeof *thread);
+  if (!thread) return vs_fail(err, VS_FAIL, "out of memory for %d threads", threads);
+
+  series s = {.def = def, .results = results};
+  pthread_mutex_init(&s.lock, NULL);
+  int started = 0;
+  for (; started < threads - 1; started++) {
+    int error = pthread_create(&thread[started], NULL, play, &s);
+    if (error == 0) continue;
+    vs_error failed = {0};
+    vs_fail(&failed, VS_FAIL, "cannot start thread %d: %s", started + 1, strerror(error));
+    stop_with(&s, &failed);
+    break;
+  }
+  play(&s); // the caller's own share
+  for (int i = 0; i < started; i++) pthread_join(thread[i], NULL);
+  pthread_mutex_destroy(&s.lock);
+  free(thread);
+  return s.error.status == VS_OK ? VS_OK : vs_fail(err, s.error.status, "%s", s.error.text);
+}

@@ -1,0 +1,85 @@
+// Means with bootstrap intervals, and the summary of a series.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "vsss/eval.h"
+
+static int by_value(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static double mean_of(const double *values, int n) {
+  double sum = 0.0;
+  for (int i = 0; i < n; i++) sum += values[i];
+  return sum / n;
+}
+
+vs_estimate vs_bootstrap(const double *values, int n, uint64_t seed) {
+  if (n == 0) return (vs_estimate){NAN, NAN, NAN};
+  double means[VS_BOOTSTRAP_RESAMPLES];
+  vs_rng rng = vs_rng_make(seed, 0);
+  for (int k = 0; k < VS_BOOTSTRAP_RESAMPLES; k++) {
+    double sum = 0.0;
+    for (int i = 0; i < n; i++) sum += values[vs_rng_below(&rng, (uint32_t)n)];
+    means[k] = sum / n;
+  }
+  qsort(means, VS_BOOTSTRAP_RESAMPLES, sizeof *means, by_value);
+  // 2.5 % of the resamples lie below low and 2.5 % above high.
+  const int tail = VS_BOOTSTRAP_RESAMPLES / 40;
+  return (vs_estimate){mean_of(values, n), means[tail], means[VS_BOOTSTRAP_RESAMPLES - 1 - tail]};
+}
+
+typedef double (*measure_fn)(const vs_match_result *match);
+
+static double goals_for(const vs_match_result *m) { return m->score[VS_BLUE]; }
+static double goals_against(const vs_match_result *m) { return m->score[VS_YELLOW]; }
+static double difference(const vs_match_result *m) { return goals_for(m) - goals_against(m); }
+static double won(const vs_match_result *m) { return difference(m) > 0; }
+static double drawn(const vs_match_result *m) { return difference(m) == 0; }
+static double lost(const vs_match_result *m) { return difference(m) < 0; }
+
+static vs_estimate estimate(const vs_match_result *const *played, int n, measure_fn measure, double *scratch) {
+  for (int i = 0; i < n; i++) scratch[i] = measure(played[i]);
+  return vs_bootstrap(scratch, n, 0);
+}
+
+static double mean_events(const vs_match_result *const *played, int n, int team, vs_event_kind kind) {
+  double sum = 0.0;
+  for (int i = 0; i < n; i++) sum += played[i]->events[team][kind];
+  return n > 0 ? sum / n : NAN;
+}
+
+static void sum_up_played(const vs_match_result *const *played, int n, double *scratch, vs_series_summary *out) {
+  out->matches = n;
+  out->win = estimate(played, n, won, scratch);
+  out->draw = estimate(played, n, drawn, scratch);
+  out->loss = estimate(played, n, lost, scratch);
+  out->goals_for = estimate(played, n, goals_for, scratch);
+  out->goals_against = estimate(played, n, goals_against, scratch);
+  out->score = estimate(played, n, difference, scratch);
+  out->penalties_for = mean_events(played, n, VS_BLUE, VS_EVENT_PENALTY);
+  out->penalties_against = mean_events(played, n, VS_YELLOW, VS_EVENT_PENALTY);
+  out->free_balls =
+      mean_events(played, n, VS_BLUE, VS_EVENT_FREE_BALL) + mean_events(played, n, VS_YELLOW, VS_EVENT_FREE_BALL);
+  out->goal_kicks =
+      mean_events(played, n, VS_BLUE, VS_EVENT_GOAL_KICK) + mean_events(played, n, VS_YELLOW, VS_EVENT_GOAL_KICK);
+  for (int i = 0; i < n; i++) out->mean_time_s += played[i]->time_s / n;
+}
+
+vs_status vs_series_sum_up(const vs_match_result *results, int n, vs_series_summary *out, vs_error *err) {
+  memset(out, 0, sizeof *out);
+  const vs_match_result **played = calloc((size_t)n + 1, sizeof *played);
+  double *scratch = calloc((size_t)n + 1, sizeof *scratch);
+  vs_status s = played && scratch ? VS_OK : vs_fail(err, VS_FAIL, "out of memory for %d results", n);
+  if (s == VS_OK) {
+    int count = 0;
+    for (int i = 0; i < n; i++)
+      if (results[i].played) played[count++] = &results[i];
+    sum_up_played(played, count, scratch, out);
+  }
+  free(played);
+  free(scratch);
+  return s;
+}

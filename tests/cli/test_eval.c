@@ -1,0 +1,96 @@
+// src/cli/cmd_eval.c, through the real binary
+#include "assert_near.h"
+#include "interrupt_vsss.h"
+
+static vsss_run run;
+
+static void play(const char *arguments) {
+  vsss(&run, arguments);
+  if (run.status != 0) fail_msg("vsss %s: status %d: %s", arguments, run.status, run.err);
+}
+
+static void read_file(const char *path, char *out, size_t size) {
+  FILE *f = fopen(path, "r");
+  if (!f) fail_msg("%s was not written", path);
+  vsss_read_all(f, out, size);
+  fclose(f);
+}
+
+static char folder[64];
+
+static int make_folder(void **state) {
+  (void)state;
+  snprintf(folder, sizeof folder, "/tmp/vsss_eval_XXXXXX");
+  return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state) {
+  (void)state;
+  char command[128];
+  snprintf(command, sizeof command, "rm -r '%s'", folder);
+  return system(command) == 0 ? 0 : -1;
+}
+
+static void the_table_and_its_files_are_the_same_for_1_and_3_threads(void **state) {
+  (void)state;
+  static char arguments[512], json[2][65536], csv[2][4096], path[128];
+  for (int k = 0; k < 2; k++) {
+    snprintf(arguments, sizeof arguments,
+             "eval --blue emc: --against random:,zero: --matches 3 --seconds 3 --drive planar --threads %d "
+             "--json %s/%d.json --csv %s/%d.csv",
+             1 + 2 * k, folder, k, folder, k);
+    play(arguments);
+    assert_non_null(strstr(run.out, "emc: as blue, 3 matches against each"));
+    assert_non_null(strstr(run.out, "sides are not swapped"));
+    assert_non_null(strstr(run.out, "\nrandom: "));
+    assert_non_null(strstr(run.out, "\nzero: "));
+    snprintf(path, sizeof path, "%s/%d.json", folder, k);
+    read_file(path, json[k], sizeof json[k]);
+    snprintf(path, sizeof path, "%s/%d.csv", folder, k);
+    read_file(path, csv[k], sizeof csv[k]);
+  }
+  assert_string_equal(json[0], json[1]);
+  assert_string_equal(csv[0], csv[1]);
+  assert_non_null(strstr(json[0], "\"complete\": true"));
+  assert_memory_equal(csv[0], "blue,yellow,matches,win,win_low,win_high,", 41);
+  assert_non_null(strstr(csv[0], "\nemc:,random:,3,"));
+  assert_non_null(strstr(csv[0], "\nemc:,zero:,3,"));
+}
+
+static void a_round_robin_prints_cross_table_and_elo(void **state) {
+  (void)state;
+  play("eval --round-robin emc:,zero:,random: --matches 2 --seconds 2 --drive planar");
+  assert_non_null(strstr(run.out, "round robin of 3 players, 2 matches as blue and as yellow"));
+  assert_non_null(strstr(run.out, "Elo"));
+  // zero: against random: in 2 s: nobody scores, a cell of draws.
+  assert_non_null(strstr(run.out, "0/100/0 +0.00"));
+}
+
+static void an_interrupted_evaluation_prints_what_is_done(void **state) {
+  (void)state;
+  vsss_interrupt(&run, "eval --matches 100000 --against random:", "kicks off first");
+  assert_int_equal(run.status, 0);
+  assert_non_null(strstr(run.out, "stopped: "));
+  assert_non_null(strstr(run.out, "win % [95 %]"));
+}
+
+static void bad_requests_are_refused_before_any_match(void **state) {
+  (void)state;
+  assert_refused("eval --against random:,nobody:", 2, "nobody:");
+  assert_refused("eval --against random:,,zero:", 2, "empty name");
+  assert_refused("eval --round-robin emc:", 2, "at least 2");
+  assert_refused("eval --round-robin emc:,inf: --against zero:", 2, "exclude");
+  assert_refused("eval --matches 0", 2, "--matches");
+  assert_refused("eval --json /nowhere/at/all.json", 1, "/nowhere/at/all.json");
+  assert_refused("eval --csv /nowhere/at/all.csv", 1, "/nowhere/at/all.csv");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_table_and_its_files_are_the_same_for_1_and_3_threads),
+      cmocka_unit_test(a_round_robin_prints_cross_table_and_elo),
+      cmocka_unit_test(an_interrupted_evaluation_prints_what_is_done),
+      cmocka_unit_test(bad_requests_are_refused_before_any_match),
+  };
+  return cmocka_run_group_tests_name("cli/eval", tests, make_folder, remove_folder);
+}

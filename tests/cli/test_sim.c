@@ -1,0 +1,144 @@
+// src/cli/cmd_sim.c, through the real binary
+#include <stdbool.h>
+
+#include "assert_near.h"
+#include "interrupt_vsss.h"
+
+static vsss_run run, other;
+
+// Runs and expects success.
+static void play(vsss_run *r, const char *arguments) {
+  vsss(r, arguments);
+  if (r->status != 0) fail_msg("vsss %s: status %d: %s", arguments, r->status, r->err);
+}
+
+// From the first '{' to the last '}', with nothing before or after but a newline, brackets in pairs.
+static void assert_one_json_object(const char *text) {
+  int depth = 0;
+  bool quoted = false;
+  const char *c = text;
+  assert_int_equal(*c, '{');
+  do {
+    if (*c == '"' && (c == text || c[-1] != '\\')) quoted = !quoted;
+    if (!quoted && (*c == '{' || *c == '[')) depth++;
+    if (!quoted && (*c == '}' || *c == ']')) depth--;
+    c++;
+  } while (*c && depth > 0);
+  assert_int_equal(depth, 0);
+  assert_string_equal(c, "\n");
+}
+
+static const char *value_of(const char *json, const char *key) {
+  char quoted[64];
+  snprintf(quoted, sizeof quoted, "\"%s\": ", key);
+  const char *at = strstr(json, quoted);
+  if (!at) fail_msg("no %s in %s", key, json);
+  return at + strlen(quoted);
+}
+
+static void a_match_shows_its_events_and_a_table(void **state) {
+  (void)state;
+  play(&run, "sim --seconds 3");
+  assert_non_null(strstr(run.out, "emc: (blue) against inf: (yellow)"));
+  assert_non_null(strstr(run.out, "0.00 s  kick-off"));
+  assert_non_null(strstr(run.out, "3.00 s  end"));
+  assert_non_null(strstr(run.out, "goals"));
+  assert_non_null(strstr(run.out, "penalties"));
+  assert_non_null(strstr(run.out, "free balls"));
+  assert_non_null(strstr(run.out, "times real time"));
+}
+
+static void json_is_one_object_and_nothing_else(void **state) {
+  (void)state;
+  play(&run, "sim --seconds 2 --yellow random: --json --seed 5");
+  assert_one_json_object(run.out);
+  assert_memory_equal(value_of(run.out, "yellow"), "\"random:\"", 9);
+  assert_memory_equal(value_of(run.out, "seed"), "5,", 2);
+  assert_memory_equal(value_of(run.out, "complete"), "true", 4);
+  assert_memory_equal(value_of(run.out, "time_s"), "2,", 2);
+}
+
+static void several_matches_are_the_same_for_1_and_3_threads_and_with_watchers(void **state) {
+  (void)state;
+  play(&run, "sim --matches 3 --seconds 2 --json --threads 1 --drive planar");
+  assert_one_json_object(run.out);
+  play(&other, "sim --matches 3 --seconds 2 --json --threads 3 --drive planar");
+  assert_string_equal(value_of(run.out, "summary"), value_of(other.out, "summary"));
+  play(&other, "sim --matches 3 --seconds 2 --json --drive planar --lcm 'memq://'");
+  assert_string_equal(value_of(run.out, "summary"), value_of(other.out, "summary"));
+  play(&other, "sim --matches 3 --seconds 2 --json --threads 1 --drive planar --seed 2");
+  assert_string_not_equal(value_of(run.out, "summary"), value_of(other.out, "summary"));
+}
+
+static void several_matches_end_in_rates_with_intervals(void **state) {
+  (void)state;
+  play(&run, "sim --matches 4 --seconds 2 --blue zero: --yellow zero: --drive planar");
+  assert_non_null(strstr(run.out, "win % [95 %]"));
+  assert_non_null(strstr(run.out, "100.0 [100.0, 100.0]")); // draws: nobody moves
+  assert_non_null(strstr(run.out, "free balls"));
+}
+
+// Three seconds of the wall clock for three of the match.
+static void realtime_keeps_the_pace_of_the_clock(void **state) {
+  (void)state;
+  play(&run, "sim --seconds 3 --realtime --json --drive planar --blue zero: --yellow random:");
+  double wall_s = atof(value_of(run.out, "wall_s"));
+  assert_true(wall_s >= 2.99);
+}
+
+static void an_interrupted_match_prints_what_is_done(void **state) {
+  (void)state;
+  vsss_interrupt(&run, "sim --seconds 7000", "kick-off");
+  assert_int_equal(run.status, 0);
+  assert_non_null(strstr(run.out, "stopped: "));
+  assert_non_null(strstr(run.out, "goals"));
+}
+
+static void help_names_every_flag(void **state) {
+  (void)state;
+  play(&run, "sim --help");
+  static const char *const flags[] = {"--blue",     "--yellow", "--matches", "--seconds",   "--seed",
+                                      "--threads",  "--drive",  "--rules",   "--placement", "--realism",
+                                      "--realtime", "--lcm",    "--video",   "--json"};
+  for (size_t i = 0; i < sizeof flags / sizeof *flags; i++) assert_non_null(strstr(run.out, flags[i]));
+}
+
+static void bad_requests_are_refused_in_one_line(void **state) {
+  (void)state;
+  assert_refused("sim --blue nobody:", 2, "nobody:");
+  assert_refused("sim --blue onnx:/nowhere.onnx", 1, "/nowhere.onnx");
+  assert_refused("sim --seconds 0", 2, "--seconds");
+  assert_refused("sim --seconds nan", 2, "--seconds");
+  assert_refused("sim --matches 0", 2, "--matches");
+  assert_refused("sim --threads -1", 2, "--threads");
+  assert_refused("sim --drive hover", 2, "hover");
+  assert_refused("sim --rules street", 2, "street");
+  assert_refused("sim --placement anywhere", 2, "anywhere");
+  assert_refused("sim --realism /nowhere.ini", 1, "/nowhere.ini");
+  assert_refused("sim --fast", 2, "--fast");
+  assert_refused("sim emc:", 2, "emc:");
+  assert_refused("sim --seconds", 2, "--seconds");
+}
+
+static void an_lcm_url_that_fails_is_an_error(void **state) {
+  (void)state;
+  vsss(&run, "sim --seconds 1 --json --lcm carrier-pigeon://field");
+  assert_int_equal(run.status, 2);
+  assert_non_null(strstr(run.err, "carrier-pigeon"));
+  assert_string_equal(run.out, "");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_match_shows_its_events_and_a_table),
+      cmocka_unit_test(json_is_one_object_and_nothing_else),
+      cmocka_unit_test(several_matches_are_the_same_for_1_and_3_threads_and_with_watchers),
+      cmocka_unit_test(several_matches_end_in_rates_with_intervals),
+      cmocka_unit_test(realtime_keeps_the_pace_of_the_clock),
+      cmocka_unit_test(an_interrupted_match_prints_what_is_done),
+      cmocka_unit_test(help_names_every_flag),
+      cmocka_unit_test(bad_requests_are_refused_in_one_line),
+      cmocka_unit_test(an_lcm_url_that_fails_is_an_error),
+  };
+  return cmocka_run_group_tests_name("cli/sim", tests, NULL, NULL);
+}

@@ -1,0 +1,76 @@
+// src/eval/statistics.c
+#include "assert_near.h"
+#include "vsss/eval.h"
+
+// A sample of 60 ones and 40 zeros: the mean of a resample is binomial(100, 0.6)/100. Its distribution function passes
+// 0.025 at 50 (0.0168 at 49, 0.0271 at 50) and 0.975 at 69 (0.9602 at 68, 0.9752 at 69); one step for the drawing.
+static void interval_of_a_rate_is_the_binomial_one(void **state) {
+  (void)state;
+  double value[100];
+  for (int i = 0; i < 100; i++) value[i] = i < 60;
+  vs_estimate e = vs_bootstrap(value, 100, 1);
+  assert_near(e.mean, 0.60, 1e-12);
+  assert_near(e.low, 0.50, 0.011);
+  assert_near(e.high, 0.69, 0.011);
+}
+
+// Twenty matches: 0 goals 6 times, 1 three times, 2 five times, 3 four times, 7 twice. The exact distribution of the
+// mean of a resample (20-fold convolution) passes 0.025 at 1.15 (0.0230 at 1.10, 0.0319 at 1.15) and 0.975 at 2.90
+// (0.9731 at 2.85, 0.9785 at 2.90). It is skewed: a symmetric normal interval would be 1.10 to 2.80.
+static void interval_of_skewed_goals_is_the_exact_one(void **state) {
+  (void)state;
+  const double value[20] = {0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2, 2, 3, 3, 3, 3, 7, 7};
+  vs_estimate e = vs_bootstrap(value, 20, 1);
+  assert_near(e.mean, 1.95, 1e-12);
+  assert_near(e.low, 1.15, 0.051);
+  assert_near(e.high, 2.90, 0.051);
+}
+
+static void interval_of_equal_values_is_a_point_and_of_none_is_nan(void **state) {
+  (void)state;
+  const double value[3] = {2, 2, 2};
+  vs_estimate e = vs_bootstrap(value, 3, 1);
+  assert_near(e.low, 2, 0);
+  assert_near(e.high, 2, 0);
+  assert_true(isnan(vs_bootstrap(value, 0, 1).mean));
+}
+
+// 2:1, 0:0, 1:3, 5:0 and one match that was not finished.
+static void summary_counts_finished_matches_from_blues_side(void **state) {
+  (void)state;
+  vs_match_result result[5] = {
+      {.played = true, .time_s = 120, .score = {2, 1}},
+      {.played = true, .time_s = 120, .score = {0, 0}},
+      {.played = false, .score = {9, 0}},
+      {.played = true, .time_s = 120, .score = {1, 3}},
+      {.played = true, .time_s = 60, .score = {5, 0}},
+  };
+  const vs_event penalty = {.kind = VS_EVENT_PENALTY, .team = VS_YELLOW}, free_ball = {.kind = VS_EVENT_FREE_BALL};
+  for (int i = 0; i < 3; i++) vs_match_count(&result[0], &penalty);
+  vs_match_count(&result[4], &free_ball);
+  vs_series_summary s;
+  assert_ok(vs_series_sum_up(result, 5, &s, err));
+  assert_int_equal(s.matches, 4);
+  assert_near(s.win.mean, 0.5, 1e-12);
+  assert_near(s.draw.mean, 0.25, 1e-12);
+  assert_near(s.loss.mean, 0.25, 1e-12);
+  assert_near(s.goals_for.mean, 2.0, 1e-12);     // (2 + 0 + 1 + 5) / 4
+  assert_near(s.goals_against.mean, 1.0, 1e-12); // (1 + 0 + 3 + 0) / 4
+  assert_near(s.score.mean, 1.0, 1e-12);         // paper (17)
+  // Means of four draws of 1, 0, -2, 5: 5 (1/256), 4 (4/256), 3.75 (4/256), ...; 2.5 % = 6.4/256 lie above 3.75.
+  assert_near(s.score.high, 3.75, 1e-12);
+  assert_near(s.penalties_against, 0.75, 1e-12);
+  assert_near(s.penalties_for, 0.0, 1e-12);
+  assert_near(s.free_balls, 0.25, 1e-12);
+  assert_near(s.mean_time_s, 105.0, 1e-9); // (3 * 120 + 60) / 4
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(interval_of_a_rate_is_the_binomial_one),
+      cmocka_unit_test(interval_of_skewed_goals_is_the_exact_one),
+      cmocka_unit_test(interval_of_equal_values_is_a_point_and_of_none_is_nan),
+      cmocka_unit_test(summary_counts_finished_matches_from_blues_side),
+  };
+  return cmocka_run_group_tests_name("eval/statistics", tests, NULL, NULL);
+}
