@@ -34,7 +34,7 @@ vs_status vs_calib_solve_pose(vs_calib *calib, const vs_calib_point *points, int
   if (count < 4) return vs_fail(err, VS_FAIL, "%d points: at least 4 are needed", count);
   if (spread_m(points, count) < 0.05)
     return vs_fail(err, VS_FAIL, "the %d points lie on one line: add some beside it", count);
-  const vs_opencv *cv;
+  const vs_opencv *cv = NULL;
   vs_status s = vs_opencv_load(&cv, err);
   if (s != VS_OK) return s;
   double *numbers = malloc(5 * count * sizeof *numbers);
@@ -98,7 +98,7 @@ vs_status vs_calib_board_new(int columns, int rows, double square_m, vs_calib_bo
   if (columns < 3 || rows < 3 || columns > 50 || rows > 50 || !(square_m > 0 && square_m < 1))
     return vs_fail(err, VS_USAGE, "a board of %d x %d inner corners, squares of %g m: allowed are 3 to 50 and 0 to 1 m",
                    columns, rows, square_m);
-  const vs_opencv *cv;
+  const vs_opencv *cv = NULL;
   vs_status s = vs_opencv_load(&cv, err);
   if (s != VS_OK) return s;
   vs_calib_board *b = calloc(1, sizeof *b);

@@ -98,7 +98,7 @@ static vs_status begin_pictures(recording *r, const char *path, const vs_camera_
 }
 
 static vs_status new_recording(recording **out, vs_error *err) {
-  const vs_opencv *cv;
+  const vs_opencv *cv = NULL;
   vs_status s = vs_opencv_load(&cv, err);
   if (s != VS_OK) return s;
   *out = calloc(1, sizeof **out);
