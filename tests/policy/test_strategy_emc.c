@@ -105,6 +105,32 @@ static void player_with_pid_sends_the_recorded_outputs(void **state) {
   assert_player_repeats("emc:?pid=1", OUT + 2, 1e-3);
 }
 
+// World centre -> (0.81, 0.63), headings as they are; its own robots, not the others.
+static void player_sees_the_world_in_its_frame(void **state) {
+  (void)state;
+  vs_player *player;
+  assert_ok(vs_player_open("emc:", &player, err));
+  vs_world world = {.ball = {.x_m = 0.1, .y_m = -0.2}};
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    world.robot[VS_OWN][i].pose = (vs_pose){-0.5 + 0.2 * i, 0.3 - 0.1 * i, 0.5 * i};
+    world.robot[VS_ADVERSARY][i].pose = (vs_pose){0.7, 0.6, -1};
+  }
+  vs_game game = {0};
+  vs_wheels out[VS_TEAM_SIZE];
+  assert_ok(vs_player_step(player, &world, &game, 1.0 / 30, out, err));
+  emc_state s;
+  assert_int_equal(vs_player_state_size(player), sizeof s);
+  vs_player_save(player, &s);
+  assert_near(s.ball.x, 0.91, 1e-12);
+  assert_near(s.ball.y, 0.43, 1e-12);
+  for (int r = 0; r < EMC_ROLES; r++) {
+    assert_near(s.role[r].at.x, 0.31 + 0.2 * r, 1e-12);
+    assert_near(s.role[r].at.y, 0.93 - 0.1 * r, 1e-12);
+    assert_near(s.role[r].theta_rad, 0.5 * r, 1e-12);
+  }
+  vs_player_close(player);
+}
+
 // A robot that drives north-east at 0.3 m/s and turns at 2 rad/s: its wheels run at 0.3 -+ 0.035 * 2 m/s, known or not.
 static void player_with_pid_derives_wheel_speeds_it_is_not_told(void **state) {
   (void)state;
@@ -139,6 +165,7 @@ int main(void) {
       cmocka_unit_test(every_recorded_tick_of_the_original_is_repeated),
       cmocka_unit_test(player_sends_the_recorded_wheel_targets),
       cmocka_unit_test(player_with_pid_sends_the_recorded_outputs),
+      cmocka_unit_test(player_sees_the_world_in_its_frame),
       cmocka_unit_test(player_with_pid_derives_wheel_speeds_it_is_not_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -197,7 +197,10 @@ static const row guard[] = {
      SEEKS,
      {.ball = {0.2, 1.0}, .attacker = {0.3, 0.9}, KEEPER_IN},
      STOPS_WITH(0.155, 1.03)},
-    {"passes our area: goes on", SEEKS, {.ball = {0.2, 1.0}, .attacker = {0.3, 1.0}, KEEPER_IN}, GOES(0.155, 1.03, 1)},
+    {"passes our area: goes on",
+     SEEKS,
+     {.ball = {0.2, 1.0}, .attacker = {0.3, 0.985}, KEEPER_IN},
+     GOES(0.155, 1.03, 1)},
     // Arriving at (0.3, 0.65) towards the goal leads from (0.2, 0.65) on.
     {"arrival leads through our area: stops",
      SEEKS,

@@ -105,6 +105,34 @@ static const event_row events[] = {
     {"nothing", VS_EVENT_NONE, VS_YELLOW, EMC22_NO_FOUL, false, false},
 };
 
+// World centre -> (0.85, 0.65).
+static void player_sees_the_world_in_its_frame(void **state) {
+  (void)state;
+  vs_player *player;
+  assert_ok(vs_player_open("emc22:", &player, err));
+  vs_world world = {.ball = {.x_m = 0.1, .y_m = -0.2, .vx_mps = 0.3, .vy_mps = 0.4}};
+  for (int i = 0; i < VS_TEAM_SIZE; i++)
+    world.robot[VS_OWN][i] = (vs_robot){.pose = {-0.5 + 0.2 * i, 0.3 - 0.1 * i, 0.5 * i}, .omega_radps = i};
+  vs_game game = {0};
+  vs_wheels out[VS_TEAM_SIZE];
+  assert_ok(vs_player_step(player, &world, &game, 0.03125, out, err));
+  emc22_state s;
+  vs_player_save(player, &s);
+  assert_near(s.ball.x, 0.95, 1e-12);
+  assert_near(s.ball.y, 0.45, 1e-12);
+  assert_near(s.velocity_mps.x, 0.3, 0);
+  assert_near(s.velocity_mps.y, 0.4, 0);
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    assert_near(s.robot[i].at.x, 0.35 + 0.2 * i, 1e-12);
+    assert_near(s.robot[i].at.y, 0.95 - 0.1 * i, 1e-12);
+    assert_near(s.robot[i].theta_rad, 0.5 * i, 1e-12);
+    assert_near(s.robot[i].omega_radps, i, 0);
+    assert_near(out[i].left_radps, vs_clamp(s.robot[i].wheel_mps[0] / 0.03, -46.66, 46.66), 1e-9);
+    assert_near(out[i].right_radps, vs_clamp(s.robot[i].wheel_mps[1] / 0.03, -46.66, 46.66), 1e-9);
+  }
+  vs_player_close(player);
+}
+
 static void unseen_opponents_are_no_obstacles(void **state) {
   (void)state;
   vs_player *player;
@@ -124,7 +152,8 @@ static void unseen_opponents_are_no_obstacles(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest others[] = {cmocka_unit_test(unseen_opponents_are_no_obstacles)};
+  const struct CMUnitTest others[] = {cmocka_unit_test(player_sees_the_world_in_its_frame),
+                                      cmocka_unit_test(unseen_opponents_are_no_obstacles)};
   int failed = RUN_ROWS("roles", rows, run) + RUN_ROWS("events", events, run_event);
   return failed + cmocka_run_group_tests(others, NULL, NULL);
 }

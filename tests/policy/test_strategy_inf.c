@@ -89,10 +89,38 @@ static void player_sends_thirty_radians_a_second_times_the_recorded_command(void
   vectors_close(&v);
 }
 
+// The world's centre is (0.80838742, 0.58339083) m = (320, 240) px; 395.85 px and 411.39 px are a metre; the orientation
+// is the mirrored heading.
+static void player_sees_the_world_in_its_frame(void **state) {
+  (void)state;
+  vs_player *player;
+  assert_ok(vs_player_open("inf:", &player, err));
+  vs_world world = {.ball = {.x_m = 0.1, .y_m = -0.2}};
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    world.robot[VS_OWN][i].pose = (vs_pose){-0.5 + 0.2 * i, 0.3 - 0.1 * i, 0.5 * i};
+    world.robot[VS_ADVERSARY][i].pose = (vs_pose){0.7, 0.6, -1};
+  }
+  vs_game game = {0};
+  vs_wheels out[VS_TEAM_SIZE];
+  assert_ok(vs_player_step(player, &world, &game, 1.0 / 30, out, err));
+  inf_state s;
+  assert_int_equal(vs_player_state_size(player), sizeof s);
+  vs_player_save(player, &s);
+  assert_near(s.ball.x, 320 + 39.585, 2e-2);
+  assert_near(s.ball.y, 240 - 82.278, 2e-2);
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    assert_near(s.robot[i].at.x, 320 + 395.85 * (-0.5 + 0.2 * i), 2e-2);
+    assert_near(s.robot[i].at.y, 240 + 411.39 * (0.3 - 0.1 * i), 2e-2);
+    assert_near(s.robot[i].o_rad, -0.5 * i, 1e-12);
+  }
+  vs_player_close(player);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_recorded_tick_of_the_original_is_repeated),
       cmocka_unit_test(player_sends_thirty_radians_a_second_times_the_recorded_command),
+      cmocka_unit_test(player_sees_the_world_in_its_frame),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -53,6 +53,38 @@ static inf_state driver(vs_point at, double theta_rad, vs_point target) {
   return s;
 }
 
+// GOTO at 0.8, worked out by a restatement of the rules in another language. The course is the law's, not the straight
+// line; on the left the branch of the field: y within, below or above the radius.
+typedef struct drive_row {
+  const char *name;
+  vs_point at;
+  double theta_rad;
+  vs_point target, toward;
+  int front;
+  double left, right;
+} drive_row;
+
+static const drive_row drives[] = {
+    {"far target, wide radius, within", {100, 250}, 0.3, {400, 260}, {696, 240}, 1, 0.7998349691, 0.5598821888},
+    {"near target, below", {300, 150}, -1.0, {330, 380}, {696, 240}, -1, -0.3130531591, -0.7890178868},
+    {"at the side, narrow radius, above", {300, 400}, 2.0, {200, 218}, {696, 240}, -1, -0.1397407577, -0.7916411244},
+    {"at the lower side, below", {300, 60}, 2.5, {250, 100}, {300, 61}, 1, 0.0137669089, 0.7965110582},
+    {"towards a wall", {500, 300}, 0.7, {480, 240}, {68, 480}, -1, -0.7893701295, -0.2803423424},
+    {"close to the target: slows", {30, 30}, 0.4, {20, 20}, {31, 29}, -1, -0.2823292634, -0.1702363058},
+    {"at the side, within", {40, 400}, -2.2, {3, 2}, {41, 399}, 1, 0.7896661332, 0.2673258015},
+};
+
+static void run_drive(void **state) {
+  const drive_row *r = *state;
+  inf_state s = driver(r->at, r->theta_rad, r->target);
+  s.robot[0].command.toward = r->toward;
+  double out[2];
+  inf_control(&s, 0, out);
+  assert_int_equal(s.robot[0].front, r->front);
+  assert_near(out[0], r->left, 1e-8);
+  assert_near(out[1], r->right, 1e-8);
+}
+
 static void first_drive_ever_is_at_three_quarters(void **state) {
   (void)state;
   inf_state s = driver((vs_point){100, 100}, 0.3, (vs_point){400, 260});
@@ -151,5 +183,6 @@ int main(void) {
       cmocka_unit_test(axis_along_a_coordinate_or_a_diagonal_gives_finite_wheels),
       cmocka_unit_test(random_targets_are_reached),
   };
-  return RUN_ROWS("turns", rows, run) + cmocka_run_group_tests(others, NULL, NULL);
+  int failed = RUN_ROWS("turns", rows, run) + RUN_ROWS("drives", drives, run_drive);
+  return failed + cmocka_run_group_tests(others, NULL, NULL);
 }
