@@ -42,8 +42,7 @@ void vs_render_free(vs_render *render); // NULL is allowed
 vs_status vs_render_world(vs_render *render, const vs_world *world, const vs_game *game, uint8_t *rgb, vs_error *err);
 
 // The CAMERA view's exact geometry: square pixels, no distortion, looking straight down on the field's centre, with the
-// image's right = +x and its top = +y. Pixel centres are at integers here, the middle of 640
-// pixels is 319.5; camera.h and calib.h count half a pixel more.
+// image's right = +x and its top = +y. Pixels are counted as in camera.h and calib.h: the middle of 640 pixels is 320.
 // x_px = cx_px + focal_px * x_m / (height_m - z_m), y_px = cy_px - focal_px * y_m / (height_m - z_m).
 typedef struct vs_pinhole {
   int width_px, height_px;

@@ -5,6 +5,7 @@
 int cmd_calibrate(int argc, char **argv);
 int cmd_detect(int argc, char **argv);
 int cmd_field(int argc, char **argv);
+int cmd_rig(int argc, char **argv);
 int cmd_train(int argc, char **argv);
 int cmd_sim(int argc, char **argv);
 int cmd_eval(int argc, char **argv);

@@ -18,6 +18,7 @@ static const command commands[] = {
     {"calibrate", cmd_calibrate, "make the file that turns pixels into metres; print tags"},
     {"detect", cmd_detect, "find tags in a picture and print their corners"},
     {"field", cmd_field, "play on a real field: camera, policy, radio"},
+    {"rig", cmd_rig, "a venue without hardware, for field to play in"},
     {"train", cmd_train, "learn by self-play; writes a policy as ONNX"},
     {"bridge", cmd_bridge, "carry wheel commands from LCM to the radio, and telemetry back"},
     {"replay", cmd_replay, "show a log of lcm-logger as text or video, or send it again"},

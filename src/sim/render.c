@@ -181,8 +181,8 @@ vs_pinhole vs_render_pinhole(const vs_render *r) {
   return (vs_pinhole){.width_px = r->def.width_px,
                       .height_px = r->def.height_px,
                       .focal_px = fmin(fit_x, fit_y) * r->def.camera_height_m,
-                      .cx_px = 0.5 * (r->def.width_px - 1),
-                      .cy_px = 0.5 * (r->def.height_px - 1),
+                      .cx_px = 0.5 * r->def.width_px,
+                      .cy_px = 0.5 * r->def.height_px,
                       .height_m = r->def.camera_height_m};
 }
 

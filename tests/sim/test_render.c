@@ -40,8 +40,8 @@ static centre find(const uint8_t *rgb, int width, int height, const uint8_t low[
     for (int x = 0; x < width; x++, rgb += 3)
       if (rgb[0] >= low[0] && rgb[0] <= high[0] && rgb[1] >= low[1] && rgb[1] <= high[1] && rgb[2] >= low[2] &&
           rgb[2] <= high[2]) {
-        c.x_px += x;
-        c.y_px += y;
+        c.x_px += x + 0.5;
+        c.y_px += y + 0.5;
         c.count++;
       }
   c.x_px /= c.count;
@@ -63,12 +63,12 @@ static void the_overhead_camera_shows_the_ball_where_its_pinhole_says(void **sta
   centre c = find(rgb, 640, 480, orange[0], orange[1]);
   // The picture's height shows 2 * 0.68 m of the floor from 2.2 m: focal = 480 / 1.36 * 2.2 = 776.5 px. The ball's
   // centre is 2.2 - 0.02135 = 2.17865 m below the lens: 0.60 m -> 213.8 px, 0.51 m -> 181.8 px; radius 7.6 px.
-  assert_near(c.x_px, 319.5 + 213.8, 0.3);
-  assert_near(c.y_px, 239.5 - 181.8, 0.3);
+  assert_near(c.x_px, 320 + 213.8, 0.3);
+  assert_near(c.y_px, 240 - 181.8, 0.3);
   assert_near(c.count, 3.1416 * 7.6 * 7.6, 12);
   vs_pinhole p = vs_render_pinhole(r);
   assert_near(p.focal_px, 776.47, 0.01);
-  assert_near(p.cx_px, 319.5, 1e-9);
+  assert_near(p.cx_px, 320, 1e-9);
   assert_near(p.height_m, 2.2, 1e-9);
   vs_render_free(r);
   free(rgb);
@@ -92,8 +92,8 @@ static void a_cap_picture_shows_its_top_row_to_the_robots_front(void **state) {
   w.robot[VS_BLUE][1] = (vs_robot){.pose = {0.2, -0.3, 1.5707963}, .valid = true};
   assert_ok(vs_render_world(r, &w, NULL, rgb, err));
   centre c = find(rgb, 640, 480, white, full);
-  assert_near(c.x_px, 319.5 + 0.17 * 366.3, 0.6);
-  assert_near(c.y_px, 239.5 + 0.27 * 366.3, 0.6);
+  assert_near(c.x_px, 320 + 0.17 * 366.3, 0.6);
+  assert_near(c.y_px, 240 + 0.27 * 366.3, 0.6);
   assert_near(c.count, 0.02 * 0.02 * 366.3 * 366.3, 20);
   vs_render_free(r);
   free(rgb);
@@ -110,8 +110,8 @@ static void adversaries_carry_their_colour_and_what_is_not_valid_is_left_out(voi
   static const uint8_t low[3] = {135, 115, 0}, high[3] = {255, 235, 60}; // from half way on
   assert_ok(vs_render_world(r, &w, NULL, rgb, err));
   centre c = find(rgb, 640, 480, low, high);
-  assert_near(c.x_px, 319.5 - 0.4 * 366.3, 0.3);
-  assert_near(c.y_px, 239.5 - 0.25 * 366.3, 0.3);
+  assert_near(c.x_px, 320 - 0.4 * 366.3, 0.3);
+  assert_near(c.y_px, 240 - 0.25 * 366.3, 0.3);
   assert_near(c.count, 0.06 * 0.06 * 366.3 * 366.3, 25);
   assert_int_equal((int)find(rgb, 640, 480, orange[0], orange[1]).count, 0); // the ball is not valid
   w.robot[VS_YELLOW][2].valid = false;

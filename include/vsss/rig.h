@@ -1,0 +1,68 @@
+// A venue without hardware: a match in real time whose own team is driven over a radio and seen by a camera, as on a real
+// field. The simulator moves the pieces, the referee judges and places them, the opponents are any player; the camera is
+// a frame stream (frame_stream.h), the radio a pseudo terminal behind which the robots' firmware runs.
+#ifndef VSSS_RIG_H
+#define VSSS_RIG_H
+
+#include "vsss/frame_stream.h"
+#include "vsss/referee.h"
+#include "vsss/sim.h"
+#include "vsss/world.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct vs_rig_def {
+  const vs_model *model; // outlives the rig
+  vs_team team;          // the one with tags and radios, played by `vsss field`
+  const char *opponent;  // player URI
+  vs_referee_def referee;
+  uint64_t seed;
+  int width_px, height_px;
+  double camera_height_m;
+  int tag_id[VS_TEAM_SIZE];
+  uint8_t radio_id[VS_TEAM_SIZE];
+  const char *folder;  // where camera, radio and calib.ini are put; made if it is missing
+  bool lcm;            // VSSS_TRUTH and VSSS_REFEREE
+  const char *lcm_url; // NULL: the default one, without which the rig goes on; given: failing to open it is an error
+} vs_rig_def;
+vs_rig_def vs_rig_def_default(const vs_model *model);
+
+typedef struct vs_rig vs_rig;
+
+// note: as in vs_field_new.
+vs_status vs_rig_new(const vs_rig_def *def, vs_rig **out, char *note, size_t note_size, vs_error *err);
+void vs_rig_free(vs_rig *rig); // NULL is allowed; removes what it put into the folder
+
+typedef struct vs_rig_step_result {
+  bool playing;   // false: waiting for somebody to open the camera
+  bool over;      // the match ended with this frame; the next call starts another
+  vs_event event; // of this frame
+  vs_world truth; // time_us is that of the picture, monotonic clock
+  int skipped;    // pictures not drawn because the machine was late; their frames were simulated all the same
+} vs_rig_step_result;
+
+// Waits for the next frame's moment while it serves the radio, simulates it and shows it to the camera.
+vs_status vs_rig_step(vs_rig *rig, vs_rig_step_result *out, vs_error *err);
+
+typedef struct vs_rig_stats {
+  int64_t frames;   // simulated
+  int64_t late;     // pictures skipped
+  int64_t touches;  // times an own robot came to touch the ball
+  int64_t commands; // radio frames that the own robots took, all three together
+  int64_t driven;   // frames in which an own robot's wheels were commanded to turn
+  vs_frame_server_stats camera;
+} vs_rig_stats;
+vs_rig_stats vs_rig_get_stats(vs_rig *rig);
+const vs_game *vs_rig_game(const vs_rig *rig);
+
+// Paths to hand to `vsss field`.
+const char *vs_rig_camera_path(const vs_rig *rig); // of the socket
+const char *vs_rig_radio_path(const vs_rig *rig);  // a link to the pseudo terminal
+const char *vs_rig_calib_path(const vs_rig *rig);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,134 @@
+// What a rig is made of, put together and taken apart.
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "rig_internal.h"
+#include "vsss/calib.h"
+#include "vsss/clock.h"
+#include "vsss/tag.h"
+
+vs_rig_def vs_rig_def_default(const vs_model *model) {
+  return (vs_rig_def){.model = model,
+                      .team = VS_BLUE,
+                      .opponent = "random:",
+                      .referee = vs_referee_def_default(VS_RULES_PAPER),
+                      .seed = 1,
+                      .width_px = 640,
+                      .height_px = 480,
+                      .camera_height_m = 2.2,
+                      .tag_id = {0, 1, 2},
+                      .radio_id = {0, 1, 2},
+                      .lcm = true};
+}
+
+static vs_status open_match(vs_rig *r, vs_error *err) {
+  vs_env_def def = vs_env_def_default(r->def.model);
+  def.player[VS_BLUE] = r->def.team == VS_BLUE ? NULL : r->def.opponent;
+  def.player[VS_YELLOW] = r->def.team == VS_YELLOW ? NULL : r->def.opponent;
+  def.referee = r->def.referee;
+  vs_status s = vs_env_new(&def, &r->env, err);
+  if (s == VS_OK) s = vs_env_reset(r->env, r->def.seed, err);
+  if (s == VS_OK) vs_env_truth(r->env, &r->truth);
+  return s;
+}
+
+static vs_status open_render(vs_rig *r, vs_error *err) {
+  vs_render_def def = vs_render_def_default(VS_VIEW_CAMERA);
+  uint8_t cap[VS_TEAM_SIZE][VS_TAG_MAX_CELLS * VS_TAG_MAX_CELLS];
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    vs_tag_pattern pattern;
+    vs_status s = vs_tag_pattern_of(VS_TAG_FAMILY, r->def.tag_id[i], &pattern, err);
+    if (s != VS_OK) return s;
+    for (int k = 0; k < pattern.cells * pattern.cells; k++)
+      cap[i][k] = pattern.cell[k / pattern.cells][k % pattern.cells];
+    def.cap[r->def.team][i] = cap[i];
+    def.cap_px = pattern.cells;
+  }
+  def.cap_size_m = VS_TAG_PAPER_M;
+  def.width_px = r->def.width_px;
+  def.height_px = r->def.height_px;
+  def.camera_height_m = r->def.camera_height_m;
+  vs_status s = vs_render_new(&def, &r->render, err);
+  if (s != VS_OK) return s;
+  r->rgb = malloc((size_t)def.width_px * (size_t)def.height_px * 3);
+  return r->rgb ? VS_OK : vs_fail(err, VS_FAIL, "out of memory");
+}
+
+// The calibration that a perfect measurement of this camera would give.
+static vs_status write_calib(vs_rig *r, vs_error *err) {
+  vs_pinhole p = vs_render_pinhole(r->render);
+  vs_calib calib = vs_calib_overhead(p.width_px, p.height_px, p.height_m, 2.0 * atan(0.5 * p.height_px / p.focal_px));
+  snprintf(calib.camera, sizeof calib.camera, "rig");
+  vs_status s = vs_calib_save(r->calib_path, &calib, err);
+  r->calibrated = s == VS_OK;
+  return s;
+}
+
+static vs_status open_radio(vs_rig *r, vs_error *err) {
+  vs_status s = vs_robots_open(&r->robots, r->def.radio_id, vs_clock_monotonic_us(), err);
+  if (s != VS_OK) return s;
+  unlink(r->radio_path); // of a rig that crashed
+  if (symlink(vs_pty_path(r->robots.pty), r->radio_path))
+    return vs_fail(err, VS_FAIL, "%s: %s", r->radio_path, strerror(errno));
+  r->linked = true;
+  return VS_OK;
+}
+
+static vs_status open_bus(vs_rig *r, char *note, size_t note_size, vs_error *err) {
+  if (!r->def.lcm) return VS_OK;
+  vs_error why = {0};
+  vs_status s = vs_bus_open(r->def.lcm_url, &r->bus, &why);
+  if (s == VS_OK) return VS_OK;
+  if (r->def.lcm_url) return vs_fail(err, s, "%s", why.text);
+  if (note && note_size) snprintf(note, note_size, "going on without LCM: %s\n", why.text);
+  return VS_OK;
+}
+
+static vs_status make_folder(const char *path, vs_error *err) {
+  if (mkdir(path, 0700) == 0 || errno == EEXIST) return VS_OK;
+  return vs_fail(err, VS_FAIL, "%s: cannot make this folder: %s", path, strerror(errno));
+}
+
+vs_status vs_rig_new(const vs_rig_def *def, vs_rig **out, char *note, size_t note_size, vs_error *err) {
+  *out = NULL;
+  if (note && note_size) *note = '\0';
+  vs_rig *r = calloc(1, sizeof *r);
+  if (!r) return vs_fail(err, VS_FAIL, "out of memory");
+  r->def = *def;
+  r->apart_s = VS_RIG_TOUCH_APART_S;
+  snprintf(r->camera_path, sizeof r->camera_path, "%s/camera", def->folder);
+  snprintf(r->radio_path, sizeof r->radio_path, "%s/radio", def->folder);
+  snprintf(r->calib_path, sizeof r->calib_path, "%s/calib.ini", def->folder);
+  vs_status s = open_match(r, err);
+  if (s == VS_OK) s = open_render(r, err);
+  if (s == VS_OK) s = make_folder(def->folder, err);
+  // The socket first: it tells whether another rig lives in this folder.
+  if (s == VS_OK) s = vs_frame_server_new(r->camera_path, def->width_px, def->height_px, VS_CAMERA_HZ, &r->camera, err);
+  if (s == VS_OK) s = open_radio(r, err);
+  if (s == VS_OK) s = write_calib(r, err);
+  if (s == VS_OK) s = open_bus(r, note, note_size, err);
+  if (s != VS_OK) {
+    vs_rig_free(r);
+    return s;
+  }
+  *out = r;
+  return VS_OK;
+}
+
+void vs_rig_free(vs_rig *r) {
+  if (!r) return;
+  vs_bus_close(r->bus);
+  vs_frame_server_free(r->camera);
+  vs_robots_close(&r->robots);
+  if (r->linked) unlink(r->radio_path);
+  if (r->calibrated) unlink(r->calib_path);
+  vs_render_free(r->render);
+  vs_env_free(r->env);
+  free(r->rgb);
+  free(r);
+}
