@@ -1,7 +1,9 @@
-// src/vision/vision_config.c
+// src/vision/vision_config.c and the [vision] section of deploy/config/field.ini
+#include <stdio.h>
 #include <string.h>
 
 #include "assert_near.h"
+#include "vsss/paths.h"
 #include "vsss/tag.h"
 #include "vsss/track.h"
 
@@ -75,12 +77,52 @@ static void no_more_than_the_capacity_is_written(void **state) {
   assert_null(rows[5].name);
 }
 
+// The shipped file shows every key of the section with the default that the program has.
+static void the_shipped_file_shows_every_key_at_its_default(void **state) {
+  (void)state;
+  int n = schema();
+  char path[4096];
+  assert_ok(vs_path_find("deploy/config/field.ini", path, sizeof path, err));
+  FILE *f = fopen(path, "r");
+  assert_non_null(f);
+  char line[512], section[512] = "";
+  bool inside = false;
+  size_t used = 0;
+  static char text[16384];
+  while (fgets(line, sizeof line, f)) {
+    if (line[0] == '[') inside = sscanf(line, "[%[a-z]]", section) == 1 && !strcmp(section, "vision");
+    if (inside) used += (size_t)snprintf(text + used, sizeof text - used, "%s", line);
+  }
+  fclose(f);
+  for (int i = 0; i < n; i++) {
+    char key[96];
+    snprintf(key, sizeof key, "\n%s = ", rows[i].name + strlen("vision."));
+    if (!strstr(text, key)) fail_msg("deploy/config/field.ini does not show %s", rows[i].name);
+    if (rows[i].type == VS_CONFIG_REAL) *(double *)rows[i].target += 0.01; // to see that the file sets it
+  }
+  assert_ok(vs_config_parse("field.ini", text, rows, err));
+  vs_detector_def d = vs_detector_def_default();
+  vs_track_def t = vs_track_def_default();
+  vs_camera_def c = vs_camera_def_default();
+  char name[32];
+  static vs_config_key defaults[ROOM];
+  assert_int_equal(vs_vision_schema(&d, &t, &c, name, defaults, ROOM), n);
+  for (int i = 0; i < n; i++) {
+    const void *file = rows[i].target, *own = defaults[i].target;
+    bool same = rows[i].type == VS_CONFIG_REAL  ? fabs(*(const double *)file - *(const double *)own) < 1e-12
+                : rows[i].type == VS_CONFIG_INT ? *(const int *)file == *(const int *)own
+                                                : !strcmp(file, own);
+    if (!same) fail_msg("deploy/config/field.ini: %s is not the default", rows[i].name);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_row_has_a_name_of_the_section_a_target_and_help),
       cmocka_unit_test(a_file_sets_what_it_names_and_leaves_the_rest),
       cmocka_unit_test(without_a_file_the_family_is_the_default),
       cmocka_unit_test(a_value_out_of_range_is_refused_with_its_line),
+      cmocka_unit_test(the_shipped_file_shows_every_key_at_its_default),
       cmocka_unit_test(no_more_than_the_capacity_is_written),
   };
   return cmocka_run_group_tests_name("vision/vision_config", tests, NULL, NULL);
