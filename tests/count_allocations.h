@@ -13,9 +13,10 @@
 #define COUNTS_ALLOCATIONS 1
 #endif
 
-static atomic_long allocations_so_far;
-
 #if COUNTS_ALLOCATIONS
+static atomic_long allocations_counted;
+static inline long allocations_so_far(void) { return atomic_load(&allocations_counted); }
+
 // The C library's own names of its allocator.
 extern void *__libc_malloc(size_t size);
 extern void *__libc_calloc(size_t n, size_t size);
@@ -23,30 +24,32 @@ extern void *__libc_realloc(void *block, size_t size);
 extern void *__libc_memalign(size_t alignment, size_t size);
 
 void *malloc(size_t size) {
-  atomic_fetch_add(&allocations_so_far, 1);
+  atomic_fetch_add(&allocations_counted, 1);
   return __libc_malloc(size);
 }
 
 void *calloc(size_t n, size_t size) {
-  atomic_fetch_add(&allocations_so_far, 1);
+  atomic_fetch_add(&allocations_counted, 1);
   return __libc_calloc(n, size);
 }
 
 void *realloc(void *block, size_t size) {
-  atomic_fetch_add(&allocations_so_far, 1);
+  atomic_fetch_add(&allocations_counted, 1);
   return __libc_realloc(block, size);
 }
 
 void *aligned_alloc(size_t alignment, size_t size) {
-  atomic_fetch_add(&allocations_so_far, 1);
+  atomic_fetch_add(&allocations_counted, 1);
   return __libc_memalign(alignment, size);
 }
 
 int posix_memalign(void **out, size_t alignment, size_t size) {
-  atomic_fetch_add(&allocations_so_far, 1);
+  atomic_fetch_add(&allocations_counted, 1);
   *out = __libc_memalign(alignment, size);
   return *out ? 0 : ENOMEM;
 }
+#else
+static inline long allocations_so_far(void) { return 0; }
 #endif
 
 #endif

@@ -182,9 +182,9 @@ static void bench_drive(vs_drive drive) {
   long allocated = 0;
   play(&one); // warm
   for (int i = 0; i < RUNS; i++) {
-    long before = allocations_so_far;
+    long before = allocations_so_far();
     speed on_one = play(&one), on_two = play(&two);
-    allocated += allocations_so_far - before;
+    allocated += allocations_so_far() - before;
     stepped[i] = step_barely(&bare, steps);
     single[i] = on_one.wall;
     core[i] = on_one.core;
