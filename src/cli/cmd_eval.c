@@ -299,10 +299,11 @@ int cmd_eval(int argc, char **argv) {
   };
   bool help;
   vs_error err = {0};
-  vs_status s = vs_args_parse(argc, argv, "eval [flags]",
-                              "Plays many matches and prints win, draw and loss rates, goals and score, each with its\n"
-                              "bootstrap 95 % interval.",
-                              flags, NULL, &help, &err);
+  char about[2048];
+  vs_match_flags_about("Plays many matches and prints win, draw and loss rates, goals and score, each with its\n"
+                       "bootstrap 95 % interval.",
+                       about, sizeof about);
+  vs_status s = vs_args_parse(argc, argv, "eval [flags]", about, flags, NULL, &help, &err);
   if (help) return 0;
   if (s == VS_OK) s = run(&c, &err);
   free(c.names);

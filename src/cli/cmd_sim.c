@@ -256,9 +256,9 @@ int cmd_sim(int argc, char **argv) {
   };
   bool help;
   vs_error err = {0};
-  vs_status s = vs_args_parse(argc, argv, "sim [flags]",
-                              "Plays matches between two players in the simulator, as fast as they go.", flags, NULL,
-                              &help, &err);
+  char about[2048];
+  vs_match_flags_about("Plays matches between two players in the simulator, as fast as they go.", about, sizeof about);
+  vs_status s = vs_args_parse(argc, argv, "sim [flags]", about, flags, NULL, &help, &err);
   if (help) return 0;
   vs_model *model = NULL;
   if (s == VS_OK) s = vs_match_flags_open(&c.match, &model, &c.env, &err);

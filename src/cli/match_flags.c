@@ -35,6 +35,13 @@ vs_status vs_match_flags_open(const vs_match_flags *flags, vs_model **model, vs_
   return VS_OK;
 }
 
+void vs_match_flags_about(const char *about, char *out, size_t size) {
+  const char *scheme, *help;
+  size_t used = (size_t)snprintf(out, size, "%s\n\nPlayers (URI):", about);
+  for (int i = 0; used < size && vs_player_scheme(i, &scheme, &help); i++)
+    used += (size_t)snprintf(out + used, size - used, "\n  %-10s %s", scheme, help);
+}
+
 void vs_match_flags_describe(const vs_match_flags *flags, char *out, size_t size) {
   snprintf(out, size, "%s drive, %s rules, %s placement, %g s, seed %d%s%s", flags->drive, flags->rules,
            flags->placement, flags->seconds, flags->seed, flags->realism ? ", realism " : "",

@@ -27,6 +27,9 @@ vs_match_flags vs_match_flags_default(void); // contact drive, paper rules, 120 
 // Loads the model and fills env, whose players are left NULL. The caller frees the model.
 vs_status vs_match_flags_open(const vs_match_flags *flags, vs_model **model, vs_env_def *env, vs_error *err);
 
+// about, then the schemes of player URIs with a line of help each, for --help.
+void vs_match_flags_about(const char *about, char *out, size_t size);
+
 // "contact drive, paper rules, 120 s, seed 1"
 void vs_match_flags_describe(const vs_match_flags *flags, char *out, size_t size);
 
