@@ -1,9 +1,9 @@
 #include "mujoco_call.h"
 
+#include <assert.h>
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include <mujoco/mujoco.h>
 
@@ -15,7 +15,7 @@ typedef struct rescue {
 static _Thread_local rescue *active;
 
 static void on_error(const char *text) {
-  if (!active) abort(); // a MuJoCo call outside vs_mujoco_call: returning would go on with broken data
+  assert(active && "a MuJoCo function that failed was called outside vs_mujoco_call"); // it must not return
   snprintf(active->text, sizeof active->text, "%s", text);
   longjmp(active->jump, 1);
 }
