@@ -2,13 +2,129 @@
 #ifndef VSSS_LEARN_H
 #define VSSS_LEARN_H
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
+#include "vsss/config.h"
+#include "vsss/reward.h"
 #include "vsss/status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+// Everything a run depends on. Settings of the command line and of INI files by the names of vs_train_schema.
+typedef struct vs_train_def {
+  // Matches.
+  char drive[16];     // planar or contact
+  char realism[256];  // INI file of sensors and dynamics; empty: the paper's noise only
+  char placement[16]; // random or paper
+  double episode_s;
+  int envs, steps; // matches side by side; decisions of each per update
+  int threads;
+  int seed;
+  // Opponents (src/learn/league.h).
+  char opponent[256]; // mix, such as "self=0.6,pool=0.4"
+  double replace_score;
+  bool window_of_zeros;
+  int pool_size, pool_every;
+  // Reward: a preset (dense, goals, paper) and changes, such as "dense,approach=0.3"; shifts linearly from the first to
+  // the second between the two numbers of transitions.
+  char reward[192], reward_end[192];
+  double anneal_from_m, anneal_to_m; // millions of transitions
+  double gamma, lambda;
+  // PPO.
+  double clip, entropy, value_weight;
+  bool clip_value, value_scale;            // value_scale: the critic works in units of the returns' deviation
+  double learning_rate, learning_rate_end; // linear over transitions_m
+  double adam_epsilon, max_gradient_norm;
+  int epochs, minibatch, pieces;
+  char hidden[64]; // layer sizes, such as "256,256"
+  double first_shape;
+  char learner[16]; // own or torch
+  // How long.
+  double transitions_m; // millions; 0: until stopped
+} vs_train_def;
+
+vs_train_def vs_train_def_default(void); // our best recipe
+// "default", or "paper" (Table 2 and what paper.md adds). VS_USAGE lists the presets.
+vs_status vs_train_def_preset(const char *name, vs_train_def *out, vs_error *err);
+
+// One row per setting, with its allowed range, targets inside def; ended by a NULL name.
+#define VS_TRAIN_KEYS_MAX 48
+void vs_train_schema(vs_train_def *def, vs_config_key keys[VS_TRAIN_KEYS_MAX]);
+// All settings as lines "key = value", as an INI file; returns the length it would need.
+size_t vs_train_def_text(const vs_train_def *def, char *out, size_t size);
+// What ranges cannot say: text fields, minibatch against batch.
+vs_status vs_train_def_check(const vs_train_def *def, vs_error *err);
+
+// What one update did: everything a double, so that CSV, TensorBoard and the status line read one table.
+typedef struct vs_train_report {
+  double update, transitions;           // so far
+  double wall_s;                        // training time so far, over all resumes
+  double transitions_per_s;             // of this update
+  double simulate_s, infer_s, learn_s;  // of this update
+  double reward, term[VS_REWARD_TERMS]; // means per transition (terms unweighted)
+  double entropy, kl, clip_fraction, explained_variance, policy_loss, value_loss, gradient_norm, learning_rate;
+  double episodes, episode_s, goals_for, goals_against; // ended in this update; means per episode
+  double frozen_score, replacements, pool;              // league
+} vs_train_report;
+
+typedef struct vs_train_column {
+  const char *name; // of the CSV
+  const char *tag;  // of TensorBoard
+  size_t offset;    // of a double in vs_train_report
+} vs_train_column;
+const vs_train_column *vs_train_columns(int *count);
+double vs_train_value(const vs_train_report *report, const vs_train_column *column);
+
+// Ranks that train together: under `mpirun -n K` the program's processes share the gradients. Collective: every rank
+// makes the same calls. NULL: alone.
+typedef struct vs_group vs_group;
+vs_status vs_group_open(vs_group **out, vs_error *err); // *out stays NULL where mpirun did not start the program
+void vs_group_close(vs_group *group, bool failed);      // failed: ends the other ranks too
+int vs_group_rank(const vs_group *group);
+int vs_group_size(const vs_group *group);
+vs_status vs_group_any(vs_group *group, bool *flag, vs_error *err); // true on all ranks where it was on one
+
+// A training run. Each rank of a group (borrowed) plays its own def->envs matches; updates are those of one run with all
+// of them. Reports count the whole group.
+typedef struct vs_train vs_train;
+vs_status vs_train_new(const vs_train_def *def, const vs_group *group, vs_train **out, vs_error *err);
+void vs_train_free(vs_train *train);
+
+// One batch of play and what is learnt from it.
+vs_status vs_train_update(vs_train *train, vs_train_report *report, vs_error *err);
+// Imitation start, before the first update: clones a scripted player's wheel commands (and learns the value of its
+// play) from `updates` batches of it against itself; frozen selves become the clone. progress (may be NULL) hears of
+// every batch, loss = -log p per transition, and stops it by returning false.
+vs_status vs_train_imitate(vs_train *train, const char *uri, int updates,
+                           bool (*progress)(void *context, double part, double loss), void *context, vs_error *err);
+
+bool vs_train_done(const vs_train *train); // transitions_m reached
+double vs_train_updates(const vs_train *train);
+double vs_train_transitions(const vs_train *train);
+const vs_train_def *vs_train_settings(const vs_train *train);
+// Results against kind k of the opponent mix: its name, episodes, win, draw, loss so far, recent mean goal difference.
+typedef struct vs_train_opponent {
+  const char *name;
+  long long episodes, wins, draws, losses;
+  double recent_score;
+} vs_train_opponent;
+int vs_train_opponents(const vs_train *train, vs_train_opponent *out, int max);
+
+// Checkpoints. Written atomically; the one before is kept as FILE.previous. vs_train_load continues a run of the same
+// settings (its def is the one of vs_train_read_def) and falls back to FILE.previous where FILE is damaged; note (may be
+// NULL, 256 bytes) then says why, else it is empty. In a group rank 0 reads and all continue from its file; the other
+// ranks' matches start anew.
+vs_status vs_train_save(const vs_train *train, const char *path, vs_error *err);
+vs_status vs_train_read_def(const char *path, vs_train_def *out, vs_error *err);
+vs_status vs_train_load(vs_train *train, const char *path, char *note, vs_error *err);
+
+// The present policy as ONNX; notes in pairs (key, value), ended by NULL, are added to its metadata.
+vs_status vs_train_export(const vs_train *train, const char *path, bool with_spread, const char *const *notes,
+                          vs_error *err);
 
 // A policy nobody trained (464-256-256-4 from this seed, outputs action, alpha and beta) as an ONNX file: a real
 // player for tests and first tries.

@@ -1,27 +1,262 @@
 // vsss train: PPO self-play.
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "cli.h"
 #include "commands.h"
+#include "vsss/clock.h"
+#include "vsss/journal.h"
 #include "vsss/learn.h"
 
+typedef struct options {
+  const char *preset, *config, *run, *resume, *export, *untrained, *opponent, *realism, *learner, *imitate;
+  int seed, threads, imitate_updates;
+  double minutes, transitions_m, checkpoint_min;
+  vs_flag_list set;
+} options;
+
+typedef struct session {
+  const options *opt;
+  char folder[PATH_MAX - 64], command[1024], commit[64];
+  vs_group *group; // NULL: alone
+  bool first;      // rank 0: shows, logs, saves
+  vs_train *train;
+  vs_journal *journal;
+  vs_train_report report;
+  double start_s, checkpoint_s, line_s;
+  vs_progress progress;
+} session;
+
+static double now_s(void) { return 1e-6 * (double)vs_clock_monotonic_us(); }
+
+static vs_status make_folder(const char *path, vs_error *err) {
+  char part[PATH_MAX];
+  for (size_t i = 1; i <= strlen(path); i++) {
+    if (path[i] != '/' && path[i] != '\0') continue;
+    snprintf(part, sizeof part, "%.*s", (int)i, path);
+    if (mkdir(part, 0755) != 0 && errno != EEXIST) return vs_fail(err, VS_FAIL, "%s: %s", part, strerror(errno));
+  }
+  return VS_OK;
+}
+
+// Preset, then file, then flags: later ones win.
+static vs_status settings(const options *o, vs_train_def *def, vs_error *err) {
+  char checkpoint[PATH_MAX];
+  vs_status s = VS_OK;
+  if (o->resume) {
+    snprintf(checkpoint, sizeof checkpoint, "%s/checkpoint", o->resume);
+    s = vs_train_read_def(checkpoint, def, err);
+  } else {
+    s = vs_train_def_preset(o->preset, def, err);
+  }
+  vs_config_key keys[VS_TRAIN_KEYS_MAX];
+  vs_train_schema(def, keys);
+  if (s == VS_OK && o->config) s = vs_config_load(o->config, keys, err);
+  for (int i = 0; s == VS_OK && i < o->set.count; i++) s = vs_config_set(o->set.value[i], keys, err);
+  const struct {
+    const char *key, *value;
+  } texts[] = {{"opponent", o->opponent}, {"realism", o->realism}, {"learner", o->learner}};
+  for (size_t i = 0; s == VS_OK && i < sizeof texts / sizeof *texts; i++) {
+    char line[512];
+    snprintf(line, sizeof line, "%s=%s", texts[i].key, texts[i].value ? texts[i].value : "");
+    if (texts[i].value) s = vs_config_set(line, keys, err);
+  }
+  if (o->seed >= 0) def->seed = o->seed;
+  if (o->threads > 0) def->threads = o->threads;
+  if (o->transitions_m > 0.0) def->transitions_m = o->transitions_m;
+  return s == VS_OK ? vs_train_def_check(def, err) : s;
+}
+
+// The commit of the sources the program runs beside, for the policy's metadata.
+static void find_commit(char *out, size_t size) {
+  snprintf(out, size, "unknown");
+  FILE *f = popen("git describe --always --dirty --abbrev=12 2>/dev/null", "r");
+  char line[64];
+  if (f && fgets(line, sizeof line, f)) {
+    line[strcspn(line, "\n")] = '\0';
+    snprintf(out, size, "%s", line);
+  }
+  if (f) pclose(f);
+}
+
+static vs_status save(session *s, vs_error *err) {
+  char path[PATH_MAX];
+  snprintf(path, sizeof path, "%s/checkpoint", s->folder);
+  vs_status status = vs_train_save(s->train, path, err);
+  const char *const notes[] = {"command", s->command, "commit", s->commit, NULL};
+  snprintf(path, sizeof path, "%s/policy.onnx", s->folder);
+  if (status == VS_OK) status = vs_train_export(s->train, path, true, notes, err);
+  if (status == VS_OK && s->opt->export) status = vs_train_export(s->train, s->opt->export, true, notes, err);
+  s->checkpoint_s = now_s();
+  return status;
+}
+
+static void status_text(const session *s, char *out, size_t size) {
+  const vs_train_report *r = &s->report;
+  double total = r->simulate_s + r->infer_s + r->learn_s;
+  int used =
+      snprintf(out, size, "%.2f M, %.0f/s (sim %.0f infer %.0f learn %.0f %%)", r->transitions * 1e-6,
+               r->transitions_per_s, 100 * r->simulate_s / total, 100 * r->infer_s / total, 100 * r->learn_s / total);
+  vs_train_opponent opponent[8];
+  int count = vs_train_opponents(s->train, opponent, 8);
+  for (int i = 0; i < count && used < (int)size; i++)
+    used += snprintf(out + used, size - (size_t)used, " %s %+.2f", opponent[i].name, opponent[i].recent_score);
+  if (used < (int)size)
+    snprintf(out + used, size - (size_t)used, " reward %.3f H %.2f kl %.4f clip %.2f ev %.2f x%.0f", r->reward,
+             r->entropy, r->kl, r->clip_fraction, r->explained_variance, r->replacements);
+}
+
+// A line that rewrites itself on a terminal, a line a minute elsewhere.
+static void show(session *s) {
+  char text[512];
+  status_text(s, text, sizeof text);
+  const vs_train_def *def = vs_train_settings(s->train);
+  double fraction = def->transitions_m > 0.0 ? s->report.transitions * 1e-6 / def->transitions_m : 0.0;
+  if (s->opt->minutes > 0.0) fraction = fmax(fraction, (now_s() - s->start_s) / (60.0 * s->opt->minutes));
+  if (s->progress.terminal) {
+    vs_progress_show(&s->progress, fraction, text);
+  } else if (now_s() - s->line_s >= 60.0 || s->line_s == 0.0) {
+    s->line_s = now_s();
+    printf("%6.1f min  update %.0f  %s\n", s->report.wall_s / 60.0, s->report.update, text);
+    fflush(stdout);
+  }
+}
+
+static bool time_is_up(const session *s) {
+  return s->opt->minutes > 0.0 && now_s() - s->start_s >= 60.0 * s->opt->minutes;
+}
+
+static bool show_imitation(void *context, double part, double loss) {
+  session *s = context;
+  char text[96];
+  snprintf(text, sizeof text, "imitating %.40s: -log p %.3f", s->opt->imitate, loss);
+  if (s->first && s->progress.terminal) vs_progress_show(&s->progress, part, text);
+  if (s->first && !s->progress.terminal && part >= 1.0) printf("%s\n", text);
+  return !vs_cli_interrupted();
+}
+
+static vs_status imitate(session *s, vs_error *err) {
+  vs_progress_start(&s->progress);
+  vs_status status = vs_train_imitate(s->train, s->opt->imitate, s->opt->imitate_updates, show_imitation, s, err);
+  vs_progress_clear(&s->progress);
+  return status;
+}
+
+// What rank 0 does after an update.
+static vs_status record(session *s, vs_error *err) {
+  vs_status status = vs_journal_add(s->journal, &s->report, err);
+  if (status != VS_OK) return status;
+  show(s);
+  return now_s() - s->checkpoint_s >= 60.0 * s->opt->checkpoint_min ? save(s, err) : VS_OK;
+}
+
+static vs_status run(session *s, vs_error *err) {
+  vs_status status = VS_OK;
+  bool stop = vs_train_done(s->train);
+  s->start_s = s->checkpoint_s = now_s();
+  vs_progress_start(&s->progress);
+  while (status == VS_OK && !stop) {
+    status = vs_train_update(s->train, &s->report, err);
+    if (status == VS_OK && s->first) status = record(s, err);
+    stop = vs_cli_interrupted() || time_is_up(s) || vs_train_done(s->train);
+    if (status == VS_OK) status = vs_group_any(s->group, &stop, err);
+  }
+  vs_progress_clear(&s->progress);
+  if (status == VS_OK && s->first) status = save(s, err);
+  return status;
+}
+
+static vs_status prepare(session *s, const vs_train_def *def, vs_error *err) {
+  char path[PATH_MAX];
+  vs_status status = s->first ? make_folder(s->folder, err) : VS_OK;
+  snprintf(path, sizeof path, "%s/checkpoint", s->folder);
+  if (status == VS_OK && s->first && !s->opt->resume && access(path, F_OK) == 0)
+    return vs_fail(err, VS_USAGE, "%s holds a run: continue it with --resume %s, or choose another --run", s->folder,
+                   s->folder);
+  if (status == VS_OK) status = vs_train_new(def, s->group, &s->train, err);
+  if (status == VS_OK && s->opt->resume) {
+    char note[256];
+    status = vs_train_load(s->train, path, note, err);
+    if (status == VS_OK && note[0]) printf("%s\n", note);
+  }
+  if (status != VS_OK || !s->first) return status;
+  char text[4096];
+  snprintf(path, sizeof path, "%s/settings.ini", s->folder);
+  vs_train_def_text(def, text, sizeof text);
+  FILE *f = fopen(path, "w");
+  if (!f || fputs(text, f) == EOF || fclose(f) != 0) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
+  return vs_journal_open(s->folder, vs_train_updates(s->train), &s->journal, err);
+}
+
+static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
+  session s = {.opt = o};
+  snprintf(s.folder, sizeof s.folder, "%s", o->resume ? o->resume : o->run);
+  size_t used = (size_t)snprintf(s.command, sizeof s.command, "vsss");
+  for (int i = 0; i < argc && used < sizeof s.command; i++)
+    used += (size_t)snprintf(s.command + used, sizeof s.command - used, " %s", argv[i]);
+  find_commit(s.commit, sizeof s.commit);
+  vs_train_def def;
+  vs_status status = settings(o, &def, err);
+  if (status == VS_OK) status = vs_group_open(&s.group, err);
+  s.first = vs_group_rank(s.group) == 0;
+  if (status == VS_OK) status = prepare(&s, &def, err);
+  if (status == VS_OK && s.first) {
+    if (s.group) printf("%d ranks, each:\n", vs_group_size(s.group));
+    printf("training in %s: %d matches x %d steps, %d threads, %s drive, against %s\n", s.folder, def.envs, def.steps,
+           def.threads, def.drive, def.opponent);
+    fflush(stdout);
+  }
+  vs_cli_catch_interrupts();
+  if (status == VS_OK && o->imitate) status = imitate(&s, err);
+  if (status == VS_OK) status = run(&s, err);
+  if (status == VS_OK && s.first)
+    printf("%s at %.2f M transitions after %.1f min of training: %s/checkpoint, %s/policy.onnx\n",
+           vs_train_done(s.train) ? "done" : "stopped", vs_train_transitions(s.train) * 1e-6, s.report.wall_s / 60.0,
+           s.folder, s.folder);
+  vs_journal_close(s.journal);
+  vs_train_free(s.train);
+  if (status != VS_OK && s.group) vs_cli_error("train", err); // said now: closing ends this process too
+  vs_group_close(s.group, status != VS_OK);
+  return status;
+}
+
 int cmd_train(int argc, char **argv) {
-  const char *untrained = NULL;
-  int seed = 1;
+  options o = {.preset = "default", .run = "runs/vsss", .seed = -1, .checkpoint_min = 5.0, .imitate_updates = 40};
   const vs_flag flags[] = {
-      {"seed", VS_FLAG_INT, &seed, "N", "everything random follows from it", 0, 2147483647},
-      {"write-untrained", VS_FLAG_TEXT, &untrained, "FILE", "write a policy nobody trained as ONNX and stop", 0, 0},
+      {"preset", VS_FLAG_TEXT, &o.preset, "NAME", "default (our recipe) or paper (its Table 2)", 0, 0},
+      {"config", VS_FLAG_TEXT, &o.config, "FILE", "settings as an INI file", 0, 0},
+      {"set", VS_FLAG_LIST, &o.set, "KEY=VALUE", "one setting (see settings.ini in the run's folder); repeatable", 0,
+       0},
+      {"seed", VS_FLAG_INT, &o.seed, "N", "everything random follows from it; -1: as set", -1, 2147483647},
+      {"threads", VS_FLAG_INT, &o.threads, "N", "0: as set", 0, 256},
+      {"opponent", VS_FLAG_TEXT, &o.opponent, "MIX", "such as frozen, emc: or self=0.6,pool=0.4", 0, 0},
+      {"realism", VS_FLAG_TEXT, &o.realism, "FILE", "sensors and dynamics drawn anew each episode", 0, 0},
+      {"learner", VS_FLAG_TEXT, &o.learner, "NAME", "own or torch", 0, 0},
+      {"imitate", VS_FLAG_TEXT, &o.imitate, "URI", "first clone this scripted player, such as emc:", 0, 0},
+      {"imitate-updates", VS_FLAG_INT, &o.imitate_updates, "N", "... from this many batches", 1, 100000},
+      {"minutes", VS_FLAG_REAL, &o.minutes, "MIN", "stop after; 0: no limit", 0, 1e6},
+      {"transitions", VS_FLAG_REAL, &o.transitions_m, "MILLION", "stop at; 0: as set", 0, 1e9},
+      {"checkpoint-every", VS_FLAG_REAL, &o.checkpoint_min, "MIN", "minutes between checkpoints", 0.001, 1e6},
+      {"run", VS_FLAG_TEXT, &o.run, "FOLDER", "a new run: checkpoint, policy.onnx, CSV, TensorBoard", 0, 0},
+      {"resume", VS_FLAG_TEXT, &o.resume, "FOLDER", "continue the run in this folder", 0, 0},
+      {"export", VS_FLAG_TEXT, &o.export, "FILE", "write the policy here too", 0, 0},
+      {"write-untrained", VS_FLAG_TEXT, &o.untrained, "FILE", "write a policy nobody trained as ONNX and stop", 0, 0},
       {.name = NULL},
   };
   bool help;
   vs_error err = {0};
-  if (vs_args_parse(argc, argv, "train [flags]", "Learns by self-play.", flags, NULL, &help, &err) != VS_OK)
-    return vs_cli_error("train", &err);
+  vs_status s = vs_args_parse(argc, argv, "train [flags]", "Learns by self-play.", flags, NULL, &help, &err);
+  if (s != VS_OK) return vs_cli_error("train", &err);
   if (help) return 0;
-  if (!untrained) {
-    vs_fail(&err, VS_USAGE, "say --write-untrained FILE");
-    return vs_cli_error("train", &err);
-  }
-  if (vs_learn_write_untrained(untrained, (uint64_t)seed, &err) != VS_OK) return vs_cli_error("train", &err);
-  return 0;
+  if (o.untrained)
+    s = vs_learn_write_untrained(o.untrained, o.seed < 0 ? 1 : (uint64_t)o.seed, &err);
+  else
+    s = train(&o, argc, argv, &err);
+  return s == VS_OK ? 0 : vs_cli_error("train", &err);
 }

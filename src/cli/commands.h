@@ -9,6 +9,7 @@ int cmd_rig(int argc, char **argv);
 int cmd_train(int argc, char **argv);
 int cmd_sim(int argc, char **argv);
 int cmd_eval(int argc, char **argv);
+int cmd_plot(int argc, char **argv);
 
 int cmd_bridge(int argc, char **argv);
 int cmd_replay(int argc, char **argv);

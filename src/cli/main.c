@@ -21,6 +21,7 @@ static const command commands[] = {
     {"rig", cmd_rig, "a venue without hardware, for field to play in"},
     {"train", cmd_train, "learn by self-play; writes a policy as ONNX"},
     {"bridge", cmd_bridge, "carry wheel commands from LCM to the radio, and telemetry back"},
+    {"plot", cmd_plot, "figures of a training run"},
     {"replay", cmd_replay, "show a log of lcm-logger as text or video, or send it again"},
     {"spy", cmd_spy, "who says what on LCM, in a window or in the terminal"},
     {NULL, NULL, NULL},

@@ -107,7 +107,8 @@ static vs_ppo_batch gathered(const struct vs_learner_part *part, int count) {
                         part->old_log_p, part->advantage, part->target, part->old_value};
 }
 
-static void gradient_piece(void *context, int piece) {
+static void gradient_piece(void *context, int piece, int thread) {
+  (void)thread;
   const job *j = context;
   vs_learner *l = j->learner;
   struct vs_learner_part *part = &l->part[piece];
@@ -131,7 +132,8 @@ static void range_of(const vs_learner *l, int range, size_t *from, size_t *count
   *count = l->net.size * (size_t)(range + 1) / RANGES - *from;
 }
 
-static void sum_range(void *context, int range) {
+static void sum_range(void *context, int range, int thread) {
+  (void)thread;
   vs_learner *l = context;
   size_t from, count;
   range_of(l, range, &from, &count);
@@ -186,14 +188,16 @@ typedef struct step_job {
   vs_adam_step step;
 } step_job;
 
-static void norm_range(void *context, int range) {
+static void norm_range(void *context, int range, int thread) {
+  (void)thread;
   step_job *j = context;
   size_t from, count;
   range_of(j->learner, range, &from, &count);
   j->squares[range] = vs_kernel_square_sum(j->learner->gradient + from, count);
 }
 
-static void adam_range(void *context, int range) {
+static void adam_range(void *context, int range, int thread) {
+  (void)thread;
   step_job *j = context;
   vs_learner *l = j->learner;
   size_t from, count;

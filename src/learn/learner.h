@@ -4,18 +4,11 @@
 #define VSSS_LEARN_LEARNER_H
 
 #include "blas.h"
+#include "group.h"
 #include "net.h"
 #include "pool.h"
 #include "ppo.h"
 #include "vsss/rng.h"
-
-// Ranks that train together; NULL where a function takes one: alone. Every rank calls in the same order.
-typedef struct vs_group {
-  int rank, size;
-  void *self;
-  vs_status (*sum_floats)(void *self, float *values, size_t count, vs_error *err); // in place, over all ranks
-  vs_status (*sum_doubles)(void *self, double *values, size_t count, vs_error *err);
-} vs_group;
 
 typedef struct vs_learner_def {
   vs_net_shape shape; // with a critic
@@ -39,6 +32,9 @@ typedef struct vs_gradient_engine {
   vs_status (*gradient)(void *self, const vs_net *net, const vs_ppo_def *def, const float *parameters,
                         const vs_ppo_batch *batch, double total_rows, float *gradient, vs_ppo_stats *stats,
                         vs_error *err);
+  // The networks' outputs alone, as vs_net_forward has them.
+  vs_status (*forward)(void *self, const vs_net *net, const float *parameters, const float *x, int rows, float *raw,
+                       float *value, vs_error *err);
   void (*free)(void *self);
 } vs_gradient_engine;
 

@@ -8,6 +8,18 @@
 
 enum { A = VS_ACTION_SIZE };
 
+// The clipped loss of one row given ln p; returns its derivative by ln p.
+static double clipped_surrogate(const vs_ppo_def *def, const vs_ppo_batch *batch, int row, double log_p,
+                                vs_ppo_stats *stats) {
+  double advantage = batch->advantage[row], log_ratio = log_p - batch->old_log_p[row];
+  double ratio = exp(vs_clamp(log_ratio, -20.0, 20.0)), clipped = vs_clamp(ratio, 1.0 - def->clip, 1.0 + def->clip);
+  double plain = ratio * advantage, limited = clipped * advantage;
+  stats->policy_loss -= fmin(plain, limited);
+  stats->kl += ratio - 1.0 - log_ratio; // Schulman's estimator, never negative
+  stats->clipped += ratio != clipped;
+  return plain > limited ? 0.0 : -plain; // the clipped branch is flat; NaN stays NaN
+}
+
 // The policy's part of one row: writes the derivatives by the 2A raw outputs.
 static void policy_row(const vs_ppo_def *def, const vs_ppo_batch *batch, int row, const float *raw, double scale,
                        float *draw, vs_ppo_stats *stats) {
@@ -19,14 +31,13 @@ static void policy_row(const vs_ppo_def *def, const vs_ppo_batch *batch, int row
     log_p += terms[k].log_p;
     stats->entropy += terms[k].entropy;
   }
-  double advantage = batch->advantage[row], log_ratio = log_p - batch->old_log_p[row];
-  double ratio = exp(vs_clamp(log_ratio, -20.0, 20.0)), clipped = vs_clamp(ratio, 1.0 - def->clip, 1.0 + def->clip);
-  double plain = ratio * advantage, limited = clipped * advantage;
-  stats->policy_loss -= fmin(plain, limited);
-  stats->kl += ratio - 1.0 - log_ratio; // Schulman's estimator, never negative
-  stats->clipped += ratio != clipped;
-  // d(-min)/d log_p: the clipped branch is flat.
-  double by_log_p = plain > limited ? 0.0 : -plain; // NaN stays NaN
+  double by_log_p;
+  if (def->imitate) {
+    stats->policy_loss -= log_p;
+    by_log_p = -1.0;
+  } else {
+    by_log_p = clipped_surrogate(def, batch, row, log_p, stats);
+  }
   for (int k = 0; k < A; k++) {
     double by_alpha = by_log_p * terms[k].log_p_alpha - def->entropy * terms[k].entropy_alpha;
     double by_beta = by_log_p * terms[k].log_p_beta - def->entropy * terms[k].entropy_beta;

@@ -12,6 +12,7 @@ typedef struct vs_ppo_def {
   bool clip_value;     // value clipped around the old one like the policy's ratio (paper's preset)
   double entropy;      // weight of the entropy bonus
   double value_weight; // of 0.5 (value - target)^2
+  bool imitate;        // the policy's part is -log p of the samples instead: cloning whoever acted
 } vs_ppo_def;
 
 // rows transitions; A = VS_ACTION_SIZE. Borrowed. Values and targets in the critic's own unit.
@@ -28,7 +29,7 @@ typedef struct vs_ppo_stats {
   double rows, policy_loss, value_loss, entropy, kl, clipped;
 } vs_ppo_stats;
 
-// Loss = mean over total_rows of: -min(ratio A, clip(ratio) A) - entropy H + value_weight 0.5 max(...)^2. Writes draw
+// Loss = mean over total_rows of: -min(ratio A, clip(ratio) A) (or -log p) - entropy H + value_weight 0.5 max(...)^2. Writes draw
 // [rows][2A] and dvalue [rows], the derivatives of the part that these rows contribute, and adds to stats.
 void vs_ppo_loss(const vs_ppo_def *def, const vs_ppo_batch *batch, const float *raw, const float *value,
                  double total_rows, float *draw, float *dvalue, vs_ppo_stats *stats);

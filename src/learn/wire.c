@@ -13,20 +13,25 @@ void vs_bytes_free(vs_bytes *bytes) {
   *bytes = (vs_bytes){0};
 }
 
-void vs_bytes_append(vs_bytes *bytes, const void *data, size_t size) {
-  if (bytes->failed || size == 0) return;
+void *vs_bytes_room(vs_bytes *bytes, size_t size) {
+  if (bytes->failed) return NULL;
   if (bytes->size + size > bytes->capacity) {
     size_t capacity = 2 * bytes->capacity > bytes->size + size ? 2 * bytes->capacity : bytes->size + size + 64;
     uint8_t *grown = realloc(bytes->data, capacity);
     if (!grown) {
       bytes->failed = true;
-      return;
+      return NULL;
     }
     bytes->data = grown;
     bytes->capacity = capacity;
   }
-  memcpy(bytes->data + bytes->size, data, size);
   bytes->size += size;
+  return bytes->data + bytes->size - size;
+}
+
+void vs_bytes_append(vs_bytes *bytes, const void *data, size_t size) {
+  void *room = vs_bytes_room(bytes, size);
+  if (room && size) memcpy(room, data, size);
 }
 
 // Wire types: 0 varint, 1 eight bytes, 2 length-delimited, 5 four bytes.

@@ -18,6 +18,8 @@ typedef struct vs_bytes {
 
 void vs_bytes_free(vs_bytes *bytes);
 void vs_bytes_append(vs_bytes *bytes, const void *data, size_t size);
+// The next size bytes, for the caller to fill in before anything else is appended; NULL out of memory.
+void *vs_bytes_room(vs_bytes *bytes, size_t size);
 
 void vs_wire_varint(vs_bytes *out, uint64_t value);
 void vs_wire_int(vs_bytes *out, int field, int64_t value);

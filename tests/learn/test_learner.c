@@ -11,7 +11,7 @@ enum { ROWS = 240, INPUTS = 12 };
 
 static vs_learner_def small_def(void) {
   return (vs_learner_def){.shape = {INPUTS, 2, {16, 8}, 2, true},
-                          .ppo = {0.2, true, 0.01, 0.5},
+                          .ppo = {.clip = 0.2, .clip_value = true, .entropy = 0.01, .value_weight = 0.5},
                           .learning_rate = 1e-3,
                           .adam_beta1 = 0.9,
                           .adam_beta2 = 0.999,
@@ -156,7 +156,7 @@ typedef struct rank_run {
 
 static void *run_rank(void *argument) {
   rank_run *r = argument;
-  vs_group group = {r->rank, 2, &r->rank, sum_floats, sum_doubles};
+  vs_group group = {.rank = r->rank, .size = 2, .self = &r->rank, .sum_floats = sum_floats, .sum_doubles = sum_doubles};
   vs_learner_def def = small_def();
   vs_pool *pool;
   vs_learner_stats stats;

@@ -96,7 +96,7 @@ static double total(const vs_ppo_def *def, const rows *r, float draw[][4], float
 
 static void derivatives_agree_with_finite_differences(void **state) {
   (void)state;
-  const vs_ppo_def def = {0.2, true, 0.01, 0.5};
+  const vs_ppo_def def = {.clip = 0.2, .clip_value = true, .entropy = 0.01, .value_weight = 0.5};
   const float h = 1e-2f;
   static rows at, moved;
   float draw[ROWS][4], dvalue[ROWS], unused[ROWS][4], unused_value[ROWS];

@@ -1,0 +1,247 @@
+// Saves and restores a training run, bit for bit.
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "archive.h"
+#include "train_internal.h"
+#include "vsss/contract.h"
+
+// The numbers of a run that are no arrays.
+typedef struct counters {
+  int64_t updates, transitions, adam_steps, decision;
+  double wall_s;
+  vs_value_scale scale;
+} counters;
+
+typedef struct league_state {
+  int32_t selves, frozen, next_id, replacements, window_at, window_filled;
+  double window[VS_LEAGUE_WINDOW];
+  vs_league_record record[VS_LEAGUE_KINDS_MAX];
+} league_state;
+
+typedef struct self_state {
+  int32_t id, in_pool, users;
+  double beaten;
+} self_state;
+
+static void save_league(const vs_league *l, vs_bytes *out) {
+  league_state state;
+  memset(&state, 0, sizeof state); // padding too: equal runs, equal files
+  state.selves = l->selves, state.frozen = l->frozen, state.next_id = l->next_id;
+  state.replacements = l->replacements, state.window_at = l->window_at, state.window_filled = l->window_filled;
+  memcpy(state.window, l->window, sizeof state.window);
+  memcpy(state.record, l->record, sizeof state.record);
+  vs_archive_section(out, "league", &state, sizeof state);
+  vs_archive_section(out, "slots", l->slot, (size_t)l->slots * sizeof *l->slot);
+  size_t each = sizeof(self_state) + l->size * sizeof(float);
+  uint8_t *at = vs_archive_room(out, "selves", (size_t)l->selves * each);
+  for (int i = 0; at && i < l->selves; i++, at += each) {
+    self_state self;
+    memset(&self, 0, sizeof self);
+    self.id = l->self[i].id, self.in_pool = l->self[i].in_pool, self.users = l->self[i].users;
+    self.beaten = l->self[i].beaten;
+    memcpy(at, &self, sizeof self);
+    if (self.id) // a free place keeps nothing worth saving
+      memcpy(at + sizeof self, l->self[i].parameters, l->size * sizeof(float));
+    else
+      memset(at + sizeof self, 0, l->size * sizeof(float));
+  }
+}
+
+vs_status vs_train_save(const vs_train *train, const char *path, vs_error *err) {
+  const vs_learner *l = &train->learner;
+  vs_bytes out = {0};
+  char settings[4096];
+  counters numbers;
+  memset(&numbers, 0, sizeof numbers);
+  numbers.updates = train->updates, numbers.transitions = train->transitions;
+  numbers.adam_steps = l->steps, numbers.decision = train->rollout.decision;
+  numbers.wall_s = train->wall_s;
+  numbers.scale = train->scale;
+  vs_archive_begin(&out);
+  vs_archive_section(&out, "contract", vs_contract_hash_hex(), 16);
+  vs_archive_section(&out, "settings", settings, vs_train_def_text(&train->def, settings, sizeof settings));
+  vs_archive_section(&out, "counters", &numbers, sizeof numbers);
+  vs_archive_section(&out, "parameters", l->parameters, l->net.size * sizeof(float));
+  vs_archive_section(&out, "mean", l->mean, l->net.size * sizeof(float));
+  vs_archive_section(&out, "square", l->square, l->net.size * sizeof(float));
+  save_league(&train->league, &out);
+  vs_archive_section(&out, "observation", train->rollout.io.observation,
+                     (size_t)VS_VECENV_ROWS(train->def.envs) * VS_OBS_SIZE * sizeof(float));
+  size_t size = train->matches.state_size(train->matches.self);
+  if (size == 0) {
+    vs_bytes_free(&out);
+    return vs_fail(err, VS_FAIL, "%s: an opponent of this run cannot be saved", path);
+  }
+  // Aligned as malloc'd memory is: the matches may keep doubles and vectors in it.
+  void *state = aligned_alloc(64, (size + 63) / 64 * 64);
+  if (!state) {
+    vs_bytes_free(&out);
+    return vs_fail(err, VS_FAIL, "%s: out of memory", path);
+  }
+  memset(state, 0, size);
+  train->matches.save(train->matches.self, state);
+  vs_archive_section(&out, "matches", state, size);
+  free(state);
+  return vs_archive_write(&out, path, err);
+}
+
+// Opens path, or path.previous where path is damaged or missing; used gets the name of the one that was read.
+static vs_status read_either(const char *path, vs_bytes *archive, char *used, size_t used_size, char *note,
+                             vs_error *err) {
+  vs_error first = {0};
+  if (note) note[0] = '\0';
+  snprintf(used, used_size, "%s", path);
+  if (vs_archive_read(path, archive, &first) == VS_OK) return VS_OK;
+  snprintf(used, used_size, "%s.previous", path);
+  if (vs_archive_read(used, archive, NULL) != VS_OK) return vs_fail(err, VS_FAIL, "%s", first.text);
+  if (note) snprintf(note, 256, "%.150s; continuing from %.80s", first.text, used);
+  return VS_OK;
+}
+
+static vs_status check_contract(const vs_bytes *archive, const char *path, vs_error *err) {
+  const void *data;
+  vs_status s = vs_archive_find(archive, path, "contract", 16, &data, NULL, err);
+  if (s == VS_OK && memcmp(data, vs_contract_hash_hex(), 16) != 0)
+    return vs_fail(err, VS_FAIL, "%s: made for contract %.16s, this program's is %s: train anew", path,
+                   (const char *)data, vs_contract_hash_hex());
+  return s;
+}
+
+vs_status vs_train_read_def(const char *path, vs_train_def *out, vs_error *err) {
+  vs_bytes archive;
+  char used[PATH_MAX];
+  const void *data;
+  size_t size;
+  vs_status s = read_either(path, &archive, used, sizeof used, NULL, err);
+  if (s != VS_OK) return s;
+  s = check_contract(&archive, used, err);
+  if (s == VS_OK) s = vs_archive_find(&archive, used, "settings", 0, &data, &size, err);
+  if (s == VS_OK) {
+    char text[4096];
+    snprintf(text, sizeof text, "%.*s", (int)(size < sizeof text ? size : sizeof text - 1), (const char *)data);
+    vs_config_key keys[VS_TRAIN_KEYS_MAX];
+    *out = vs_train_def_default();
+    vs_train_schema(out, keys);
+    s = vs_config_parse(used, text, keys, err);
+  }
+  vs_bytes_free(&archive);
+  return s;
+}
+
+static vs_status load_floats(const vs_bytes *archive, const char *path, const char *name, float *out, size_t count,
+                             vs_error *err) {
+  const void *data;
+  vs_status s = vs_archive_find(archive, path, name, count * sizeof *out, &data, NULL, err);
+  if (s == VS_OK) memcpy(out, data, count * sizeof *out);
+  return s;
+}
+
+static vs_status load_selves(vs_league *l, const uint8_t *at, int count, vs_error *err) {
+  vs_frozen_self *grown = realloc(l->self, (size_t)(count > l->selves ? count : l->selves) * sizeof *grown);
+  if (!grown && count > 0) return vs_fail(err, VS_FAIL, "out of memory for %d frozen opponents", count);
+  if (grown) l->self = grown;
+  for (; l->selves < count; l->selves++) l->self[l->selves] = (vs_frozen_self){0};
+  for (int i = 0; i < l->selves; i++) {
+    vs_frozen_self *self = &l->self[i];
+    self_state state = {0};
+    if (i < count) memcpy(&state, at, sizeof state);
+    self->id = state.id, self->in_pool = state.in_pool, self->users = state.users, self->beaten = state.beaten;
+    if (i >= count) continue;
+    if (!self->parameters) self->parameters = malloc(l->size * sizeof(float));
+    if (!self->parameters) return vs_fail(err, VS_FAIL, "out of memory for %d frozen opponents", count);
+    memcpy(self->parameters, at + sizeof state, l->size * sizeof(float));
+    at += sizeof state + l->size * sizeof(float);
+  }
+  return VS_OK;
+}
+
+static vs_status load_league(vs_league *l, const vs_bytes *archive, const char *path, vs_error *err) {
+  const void *data, *slots, *selves;
+  league_state state;
+  vs_status s = vs_archive_find(archive, path, "league", sizeof state, &data, NULL, err);
+  if (s != VS_OK) return s;
+  memcpy(&state, data, sizeof state);
+  s = vs_archive_find(archive, path, "slots", (size_t)l->slots * sizeof *l->slot, &slots, NULL, err);
+  size_t size = (size_t)state.selves * (sizeof(self_state) + l->size * sizeof(float)), found = 0;
+  if (s == VS_OK) s = vs_archive_find(archive, path, "selves", size, &selves, &found, err);
+  if (s == VS_OK) s = load_selves(l, selves, state.selves, err);
+  if (s != VS_OK) return s;
+  memcpy(l->slot, slots, (size_t)l->slots * sizeof *l->slot);
+  l->frozen = state.frozen, l->next_id = state.next_id, l->replacements = state.replacements;
+  l->window_at = state.window_at, l->window_filled = state.window_filled;
+  memcpy(l->window, state.window, sizeof state.window);
+  memcpy(l->record, state.record, sizeof state.record);
+  return VS_OK;
+}
+
+static vs_status load_matches(vs_train *t, const vs_bytes *archive, const char *path, vs_error *err) {
+  const void *data;
+  size_t size = t->matches.state_size(t->matches.self);
+  vs_status s = vs_archive_find(archive, path, "matches", size, &data, NULL, err);
+  if (s != VS_OK) return s;
+  // Matches are restored into ones that have started, from aligned memory.
+  s = t->matches.reset(t->matches.self, &t->rollout.io, err);
+  void *state = aligned_alloc(64, (size + 63) / 64 * 64);
+  if (s == VS_OK && !state) s = vs_fail(err, VS_FAIL, "%s: out of memory", path);
+  if (s == VS_OK) {
+    memcpy(state, data, size);
+    t->matches.restore(t->matches.self, state);
+  }
+  free(state);
+  size_t observations = (size_t)VS_VECENV_ROWS(t->def.envs) * VS_OBS_SIZE;
+  if (s == VS_OK) s = load_floats(archive, path, "observation", t->rollout.io.observation, observations, err);
+  return s;
+}
+
+// The archive of rank 0, on all ranks. What rank 0 failed with, the others say too.
+static vs_status share_archive(const vs_group *g, vs_status status, vs_bytes *archive, vs_error *err) {
+  struct {
+    uint64_t size;
+    int32_t status;
+    vs_error error;
+  } head = {archive->size, (int32_t)status, err ? *err : (vs_error){0}};
+  vs_status s = g->broadcast(g->self, &head, sizeof head, err);
+  if (s != VS_OK) return s;
+  if (head.status != VS_OK) return vs_fail(err, (vs_status)head.status, "%s", head.error.text);
+  if (g->rank != 0 && !vs_bytes_room(archive, head.size)) return vs_fail(err, VS_FAIL, "out of memory");
+  return g->broadcast(g->self, archive->data, archive->size, err);
+}
+
+static vs_status load(vs_train *t, const vs_bytes *archive, const char *path, vs_error *err) {
+  const void *data;
+  counters numbers;
+  vs_learner *l = &t->learner;
+  vs_status s = check_contract(archive, path, err);
+  if (s == VS_OK) s = vs_archive_find(archive, path, "counters", sizeof numbers, &data, NULL, err);
+  if (s != VS_OK) return s;
+  memcpy(&numbers, data, sizeof numbers);
+  s = load_floats(archive, path, "parameters", l->parameters, l->net.size, err);
+  if (s == VS_OK) s = load_floats(archive, path, "mean", l->mean, l->net.size, err);
+  if (s == VS_OK) s = load_floats(archive, path, "square", l->square, l->net.size, err);
+  if (s == VS_OK) s = load_league(&t->league, archive, path, err);
+  // The file holds the matches of rank 0; other ranks start theirs anew, and their slots' episodes with them.
+  if (s == VS_OK && vs_group_rank(t->group) == 0) s = load_matches(t, archive, path, err);
+  if (s != VS_OK) return s;
+  t->updates = numbers.updates, t->transitions = numbers.transitions, t->wall_s = numbers.wall_s;
+  t->scale = numbers.scale;
+  l->steps = numbers.adam_steps;
+  t->rollout.decision = numbers.decision;
+  t->started = vs_group_rank(t->group) == 0;
+  return VS_OK;
+}
+
+vs_status vs_train_load(vs_train *train, const char *path, char *note, vs_error *err) {
+  vs_bytes archive = {0};
+  char used[PATH_MAX];
+  vs_status s = VS_OK;
+  snprintf(used, sizeof used, "%s", path);
+  if (note) note[0] = '\0';
+  if (vs_group_rank(train->group) == 0) s = read_either(path, &archive, used, sizeof used, note, err);
+  if (train->group) s = share_archive(train->group, s, &archive, err);
+  if (s == VS_OK) s = load(train, &archive, used, err);
+  vs_bytes_free(&archive);
+  return s;
+}

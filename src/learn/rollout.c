@@ -1,0 +1,328 @@
+#include "rollout.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "beta.h"
+#include "gae.h"
+#include "vsss/geom.h"
+
+enum { A = VS_ACTION_SIZE, CHUNK = 128 };
+
+// One piece of inference: up to CHUNK rows of one network.
+typedef struct infer_job {
+  const vs_net *net;
+  const float *parameters;
+  const int *row; // in io.observation
+  int count;
+  int learning; // position of its first row among the learning rows; -1: a frozen self
+} infer_job;
+
+struct vs_rollout_scratch {
+  int threads;
+  vs_net_work *joint, *actor; // [threads]
+  float *gathered;            // [threads][CHUNK][inputs]
+  int *frozen_row;            // [all rows]: rows of frozen selves, grouped
+  infer_job *job;
+  int jobs, jobs_max;
+  // Of the step being worked on:
+  vs_rollout *rollout;
+  const vs_value_scale *scale;
+  int t;
+  bool keep; // false: values only, of the state after the last step
+};
+
+static int all_rows(const vs_rollout *r) { return VS_VECENV_ROWS(r->def.envs); }
+
+static void *zeroed(size_t count, size_t size, bool *failed) {
+  void *p = calloc(count ? count : 1, size);
+  if (!p) *failed = true;
+  return p;
+}
+
+static bool allocate_io(vs_rollout *r) {
+  bool failed = false;
+  size_t rows = (size_t)all_rows(r), envs = (size_t)r->def.envs;
+  r->io.observation = zeroed(rows * VS_OBS_SIZE, sizeof(float), &failed);
+  r->io.final_observation = zeroed(rows * VS_OBS_SIZE, sizeof(float), &failed);
+  r->io.action = zeroed(rows * A, sizeof(float), &failed);
+  r->io.reward_terms = zeroed(rows * VS_REWARD_TERMS, sizeof(float), &failed);
+  r->io.done = zeroed(envs, 1, &failed);
+  r->io.time_limit = zeroed(envs, 1, &failed);
+  r->io.score = zeroed(envs * VS_TEAMS, sizeof(int32_t), &failed);
+  r->io.episode_s = zeroed(envs, sizeof(float), &failed);
+  return !failed;
+}
+
+static bool allocate_batch(vs_rollout *r) {
+  bool failed = false;
+  size_t n = (size_t)r->rows * (size_t)r->def.steps;
+  float **const vectors[] = {&r->log_p, &r->advantage, &r->target, &r->reward, &r->cut_value, &r->old_value};
+  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) *vectors[i] = zeroed(n, sizeof(float), &failed);
+  r->x = malloc(n * VS_OBS_SIZE * sizeof(float));
+  r->log_u = zeroed(n * A, sizeof(float), &failed);
+  r->log_1_u = zeroed(n * A, sizeof(float), &failed);
+  r->value = zeroed(n + (size_t)r->rows, sizeof(float), &failed);
+  r->end = zeroed(n, 1, &failed);
+  return r->x && !failed;
+}
+
+static vs_status allocate_scratch(vs_rollout *r, vs_error *err) {
+  bool failed = false;
+  struct vs_rollout_scratch *s = r->scratch = zeroed(1, sizeof *s, &failed);
+  if (!s) return vs_fail(err, VS_FAIL, "out of memory");
+  s->rollout = r;
+  s->threads = vs_pool_threads(r->pool);
+  size_t threads = (size_t)s->threads;
+  s->joint = zeroed(threads, sizeof *s->joint, &failed);
+  s->actor = zeroed(threads, sizeof *s->actor, &failed);
+  s->gathered = zeroed(threads * CHUNK * VS_OBS_SIZE, sizeof(float), &failed);
+  s->frozen_row = zeroed((size_t)all_rows(r), sizeof(int), &failed);
+  // At worst every match meets another frozen self.
+  s->jobs_max = all_rows(r) / CHUNK + r->def.envs + 2;
+  s->job = zeroed((size_t)s->jobs_max, sizeof *s->job, &failed);
+  if (failed) return vs_fail(err, VS_FAIL, "out of memory for %d matches", r->def.envs);
+  for (int i = 0; i < s->threads; i++) {
+    vs_status status = vs_net_work_init(&s->joint[i], r->net, CHUNK, false, err);
+    if (status == VS_OK) status = vs_net_work_init(&s->actor[i], &r->actor, CHUNK, false, err);
+    if (status != VS_OK) return status;
+  }
+  return VS_OK;
+}
+
+static bool team_learns(const vs_rollout *r, int env, int team) {
+  return vs_league_kind(r->league, env) == VS_OPPONENT_SELF || r->league->slot[env].learner == (vs_team)team;
+}
+
+static bool list_learning_rows(vs_rollout *r) {
+  r->row = malloc((size_t)all_rows(r) * sizeof *r->row);
+  if (!r->row) return false;
+  for (int row = 0; row < all_rows(r); row++) {
+    int env = row / (VS_TEAMS * VS_TEAM_SIZE), team = row / VS_TEAM_SIZE % VS_TEAMS;
+    if (team_learns(r, env, team)) r->row[r->rows++] = row;
+  }
+  return true;
+}
+
+vs_status vs_rollout_init(vs_rollout *rollout, const vs_rollout_def *def, const vs_learner *learner, vs_league *league,
+                          vs_error *err) {
+  *rollout =
+      (vs_rollout){.def = *def, .net = &learner->net, .blas = &learner->blas, .pool = learner->pool, .league = league};
+  vs_net_shape shape = learner->net.shape;
+  shape.critic = false;
+  vs_status s = vs_net_init(&rollout->actor, &shape, err);
+  if (s == VS_OK && (!allocate_io(rollout) || !list_learning_rows(rollout) || !allocate_batch(rollout)))
+    s = vs_fail(err, VS_FAIL, "out of memory for %d matches x %d steps: lower envs or steps", def->envs, def->steps);
+  if (s == VS_OK) s = allocate_scratch(rollout, err);
+  if (s != VS_OK) vs_rollout_free(rollout);
+  return s;
+}
+
+static void free_scratch(struct vs_rollout_scratch *s) {
+  if (!s) return;
+  for (int i = 0; i < s->threads; i++) {
+    if (s->joint) vs_net_work_free(&s->joint[i]);
+    if (s->actor) vs_net_work_free(&s->actor[i]);
+  }
+  free(s->joint);
+  free(s->actor);
+  free(s->gathered);
+  free(s->frozen_row);
+  free(s->job);
+  free(s);
+}
+
+void vs_rollout_free(vs_rollout *r) {
+  free_scratch(r->scratch);
+  void *const owned[] = {r->io.observation,
+                         r->io.final_observation,
+                         r->io.action,
+                         r->io.reward_terms,
+                         r->io.done,
+                         r->io.time_limit,
+                         r->io.score,
+                         r->io.episode_s,
+                         r->row,
+                         r->x,
+                         r->log_u,
+                         r->log_1_u,
+                         r->log_p,
+                         r->advantage,
+                         r->target,
+                         r->value,
+                         r->reward,
+                         r->cut_value,
+                         r->old_value,
+                         r->end};
+  for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+  *r = (vs_rollout){0};
+}
+
+// Draws the action of one row: number `decision` of the row's own stream, whoever computes it. log_p NULL: a frozen
+// self, of which nothing is kept.
+static void sample_row(vs_rollout *r, const float *raw, int row, size_t kept, bool learning) {
+  vs_rng rng = vs_rng_make(vs_seed_mix(r->def.seed, (uint64_t)r->decision), (uint64_t)row);
+  double log_p = 0.0;
+  for (int k = 0; k < A; k++) {
+    double alpha = 1.0 + vs_softplus(raw[k]), beta = 1.0 + vs_softplus(raw[A + k]);
+    double u = vs_beta_sample(alpha, beta, &rng);
+    r->io.action[row * A + k] = (float)(2.0 * u - 1.0);
+    if (!learning) continue;
+    float log_u = (float)log(u), log_1_u = (float)log1p(-u);
+    r->log_u[kept * A + (size_t)k] = log_u;
+    r->log_1_u[kept * A + (size_t)k] = log_1_u;
+    log_p += vs_beta_log_density(alpha, beta, log_u, log_1_u);
+  }
+  if (learning) r->log_p[kept] = (float)log_p;
+}
+
+static void infer_piece(void *context, int piece, int thread) {
+  struct vs_rollout_scratch *s = context;
+  vs_rollout *r = s->rollout;
+  const infer_job *job = &s->job[piece];
+  bool learning = job->learning >= 0;
+  size_t kept = (size_t)s->t * (size_t)r->rows + (size_t)(learning ? job->learning : 0);
+  float *x = learning && s->keep ? r->x + kept * VS_OBS_SIZE : s->gathered + (size_t)thread * CHUNK * VS_OBS_SIZE;
+  for (int i = 0; i < job->count; i++)
+    memcpy(x + (size_t)i * VS_OBS_SIZE, r->io.observation + (size_t)job->row[i] * VS_OBS_SIZE, VS_OBS_SIZE * sizeof *x);
+  vs_net_work *work = learning ? &s->joint[thread] : &s->actor[thread];
+  vs_net_forward(job->net, r->blas, job->parameters, x, job->count, work);
+  for (int i = 0; i < job->count; i++) {
+    size_t at = kept + (size_t)i;
+    if (learning) r->value[at] = (float)(work->value[i] * s->scale->deviation + s->scale->mean);
+    if (s->keep && !r->watch) sample_row(r, work->raw + i * 2 * A, job->row[i], at, learning);
+  }
+}
+
+static void add_jobs(struct vs_rollout_scratch *s, infer_job job, int rows) {
+  for (int from = 0; from < rows; from += CHUNK) {
+    infer_job *j = &s->job[s->jobs++];
+    *j = job;
+    j->row = job.row + from;
+    j->count = rows - from < CHUNK ? rows - from : CHUNK;
+    if (job.learning >= 0) j->learning = from;
+  }
+}
+
+// Rows of the frozen selves, grouped by self, so that each group is one network's batch.
+static void add_frozen_jobs(vs_rollout *r) {
+  struct vs_rollout_scratch *s = r->scratch;
+  int used = 0;
+  for (int self = 0; self < r->league->selves; self++) {
+    if (r->league->self[self].users == 0) continue;
+    int from = used;
+    for (int env = 0; env < r->def.envs; env++) {
+      const vs_league_slot *slot = &r->league->slot[env];
+      if (slot->self != self) continue;
+      int first = (env * VS_TEAMS + (slot->learner == VS_BLUE)) * VS_TEAM_SIZE;
+      for (int k = 0; k < VS_TEAM_SIZE; k++) s->frozen_row[used++] = first + k;
+    }
+    add_jobs(s, (infer_job){&r->actor, r->league->self[self].parameters, s->frozen_row + from, 0, -1}, used - from);
+  }
+}
+
+void vs_rollout_begin(vs_rollout *rollout) { rollout->stats = (vs_rollout_stats){0}; }
+
+void vs_rollout_act(vs_rollout *rollout, int t, const float *parameters, const vs_value_scale *scale) {
+  struct vs_rollout_scratch *s = rollout->scratch;
+  s->t = t;
+  s->scale = scale;
+  s->keep = true;
+  s->jobs = 0;
+  add_jobs(s, (infer_job){rollout->net, parameters, rollout->row, 0, 0}, rollout->rows);
+  if (!rollout->watch) add_frozen_jobs(rollout);
+  vs_pool_run(rollout->pool, s->jobs, infer_piece, s);
+  rollout->decision++;
+}
+
+// What a state was worth whose episode the clock cut short: rows [at, at + 3) of a match.
+static void value_of_cut(vs_rollout *r, int row, const float *parameters, const vs_value_scale *scale, float *out) {
+  vs_net_work *work = &r->scratch->joint[0];
+  vs_net_forward(r->net, r->blas, parameters, r->io.final_observation + (size_t)row * VS_OBS_SIZE, 1, work);
+  *out = (float)(work->value[0] * scale->deviation + scale->mean);
+}
+
+static void record_row(vs_rollout *r, int t, int i, const float *parameters, const vs_value_scale *scale,
+                       const vs_reward_weights *weights) {
+  int row = r->row[i], env = row / (VS_TEAMS * VS_TEAM_SIZE);
+  size_t at = (size_t)t * (size_t)r->rows + (size_t)i;
+  const float *terms = r->io.reward_terms + (size_t)row * VS_REWARD_TERMS;
+  double reward = 0.0;
+  for (int k = 0; k < VS_REWARD_TERMS; k++) {
+    reward += weights->weight[k] * terms[k];
+    r->stats.terms[k] += terms[k];
+  }
+  r->reward[at] = (float)reward;
+  r->stats.reward += reward;
+  r->end[at] = !r->io.done[env] ? VS_GOES_ON : r->io.time_limit[env] ? VS_CUT : VS_ENDED;
+  if (r->end[at] == VS_CUT) value_of_cut(r, row, parameters, scale, &r->cut_value[at]);
+}
+
+// What the scripts did in step t, as samples of a Beta distribution. Full speed is moved off the edge of [0, 1], where
+// no density is finite.
+static void watch_actions(vs_rollout *r, int t) {
+  static const double edge = 0.02;
+  for (int i = 0; i < r->rows; i++)
+    for (int k = 0; k < A; k++) {
+      double u = vs_clamp(0.5 * (r->io.action[r->row[i] * A + k] + 1.0), edge, 1.0 - edge);
+      size_t at = ((size_t)t * (size_t)r->rows + (size_t)i) * A + (size_t)k;
+      r->log_u[at] = (float)log(u);
+      r->log_1_u[at] = (float)log1p(-u);
+    }
+}
+
+void vs_rollout_record(vs_rollout *rollout, int t, const float *parameters, const vs_value_scale *scale,
+                       const vs_reward_weights *weights) {
+  if (rollout->watch) watch_actions(rollout, t);
+  for (int i = 0; i < rollout->rows; i++) record_row(rollout, t, i, parameters, scale, weights);
+  rollout->stats.transitions += rollout->rows;
+  for (int env = 0; env < rollout->def.envs; env++) {
+    if (!rollout->io.done[env]) continue;
+    int side = rollout->league->slot[env].learner;
+    int goals_for = rollout->io.score[env * VS_TEAMS + side], against = rollout->io.score[env * VS_TEAMS + !side];
+    rollout->stats.episodes++;
+    rollout->stats.episode_s += rollout->io.episode_s[env];
+    rollout->stats.goals_for += goals_for;
+    rollout->stats.goals_against += against;
+    vs_league_episode_over(rollout->league, env, goals_for, against);
+  }
+}
+
+void vs_value_scale_update(vs_value_scale *scale, double count, double sum, double squares) {
+  if (!scale->on) return;
+  static const double keep = 0.9; // of an update: the scale follows the returns over about ten batches
+  scale->weight = keep * scale->weight + count;
+  scale->sum = keep * scale->sum + sum;
+  scale->squares = keep * scale->squares + squares;
+  scale->mean = scale->sum / scale->weight;
+  scale->deviation = fmax(sqrt(fmax(scale->squares / scale->weight - scale->mean * scale->mean, 0.0)), 1e-3);
+}
+
+void vs_value_scale_fit(const vs_value_scale *from, const vs_value_scale *to, const vs_net *net, float *parameters) {
+  int last = net->shape.width[net->shape.layers - 1];
+  float *weight = parameters + net->head_weight[VS_CRITIC], *bias = parameters + net->head_bias[VS_CRITIC];
+  double ratio = from->deviation / to->deviation;
+  for (int i = 0; i < last; i++) weight[i] = (float)(weight[i] * ratio);
+  *bias = (float)((from->deviation * *bias + from->mean - to->mean) / to->deviation);
+}
+
+vs_ppo_batch vs_rollout_finish(vs_rollout *rollout, const float *parameters, vs_value_scale *scale) {
+  struct vs_rollout_scratch *s = rollout->scratch;
+  s->t = rollout->def.steps;
+  s->scale = scale;
+  s->keep = false;
+  s->jobs = 0;
+  add_jobs(s, (infer_job){rollout->net, parameters, rollout->row, 0, 0}, rollout->rows);
+  vs_pool_run(rollout->pool, s->jobs, infer_piece, s);
+  vs_gae(rollout->def.steps, rollout->rows, rollout->def.gamma, rollout->def.lambda, rollout->reward, rollout->value,
+         rollout->end, rollout->cut_value, rollout->advantage, rollout->target);
+  return (vs_ppo_batch){rollout->rows * rollout->def.steps,
+                        rollout->x,
+                        rollout->log_u,
+                        rollout->log_1_u,
+                        rollout->log_p,
+                        rollout->advantage,
+                        rollout->target,
+                        rollout->old_value};
+}

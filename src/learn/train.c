@@ -1,0 +1,269 @@
+// The training loop: play a batch, learn from it, let the league look at the result.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "export.h"
+#include "reward_mix.h"
+#include "torch_engine.h"
+#include "train_internal.h"
+#include "train_matches.h"
+#include "vsss/clock.h"
+
+static vs_learner_def learner_def(const vs_train_def *def, const vs_net_shape *shape) {
+  return (vs_learner_def){.shape = *shape,
+                          .ppo = {.clip = def->clip,
+                                  .clip_value = def->clip_value,
+                                  .entropy = def->entropy,
+                                  .value_weight = def->value_weight},
+                          .learning_rate = def->learning_rate,
+                          .adam_beta1 = 0.9,
+                          .adam_beta2 = 0.999,
+                          .adam_epsilon = def->adam_epsilon,
+                          .max_gradient_norm = def->max_gradient_norm,
+                          .first_shape = def->first_shape,
+                          .epochs = def->epochs,
+                          .minibatch = def->minibatch,
+                          .pieces = def->pieces};
+}
+
+static vs_status make_learner(vs_train *t, vs_error *err) {
+  vs_net_shape shape = {.inputs = VS_OBS_SIZE, .actions = VS_ACTION_SIZE, .critic = true};
+  vs_status s = vs_train_hidden(&t->def, &shape, err);
+  if (s != VS_OK) return s;
+  vs_learner_def def = learner_def(&t->def, &shape);
+  s = vs_pool_new(t->def.threads, &t->pool, err);
+  if (s == VS_OK) s = vs_learner_init(&t->learner, &def, t->pool, (uint64_t)t->def.seed, err);
+  if (s != VS_OK) return s;
+  t->learner.group = t->group;
+  if (strcmp(t->def.learner, "torch") == 0) {
+    s = vs_torch_engine_open(&t->engine, err);
+    t->learner.engine = &t->engine;
+  }
+  return s;
+}
+
+static vs_status make_league_and_rollout(vs_train *t, vs_error *err) {
+  vs_league_def league = {.replace_score = t->def.replace_score,
+                          .window_of_zeros = t->def.window_of_zeros,
+                          .pool_size = t->def.pool_size,
+                          .pool_every = t->def.pool_every};
+  vs_net actor;
+  vs_net_shape shape = t->learner.net.shape;
+  shape.critic = false;
+  vs_status s = vs_league_parse(t->def.opponent, &league, err);
+  if (s == VS_OK) s = vs_net_init(&actor, &shape, err);
+  if (s != VS_OK) return s;
+  t->actor = malloc(actor.size * sizeof *t->actor);
+  if (!t->actor) return vs_fail(err, VS_FAIL, "out of memory");
+  vs_net_extract_actor(&t->learner.net, t->learner.parameters, &actor, t->actor);
+  // Every rank plays its own matches.
+  uint64_t seed = vs_seed_mix((uint64_t)t->def.seed, 1000 + (uint64_t)vs_group_rank(t->group));
+  s = vs_league_init(&t->league, &league, t->def.envs, actor.size, t->actor, seed, err);
+  const vs_rollout_def def = {t->def.envs, t->def.steps, t->def.gamma, t->def.lambda, seed};
+  if (s == VS_OK) s = vs_rollout_init(&t->rollout, &def, &t->learner, &t->league, err);
+  return s;
+}
+
+vs_status vs_train_new_over(const vs_train_def *def, const vs_matches *matches, const vs_group *group, vs_train **out,
+                            vs_error *err) {
+  *out = NULL;
+  vs_train *t = calloc(1, sizeof *t);
+  if (!t) return vs_fail(err, VS_FAIL, "out of memory");
+  t->def = *def;
+  if (matches) t->matches = *matches;
+  t->group = group;
+  t->scale = (vs_value_scale){.on = def->value_scale, .mean = 0.0, .deviation = 1.0};
+  vs_status s = vs_train_def_check(def, err);
+  if (s == VS_OK) s = vs_reward_mix_parse(def->reward, &t->reward_start, err);
+  if (s == VS_OK) s = vs_reward_mix_parse(def->reward_end, &t->reward_end, err);
+  if (s == VS_OK) s = make_learner(t, err);
+  if (s == VS_OK) s = make_league_and_rollout(t, err);
+  if (s == VS_OK && !matches) s = vs_train_matches_open(def, &t->league, vs_group_rank(group), NULL, &t->matches, err);
+  if (s != VS_OK) {
+    vs_train_free(t);
+    return s;
+  }
+  *out = t;
+  return VS_OK;
+}
+
+vs_status vs_train_new(const vs_train_def *def, const vs_group *group, vs_train **out, vs_error *err) {
+  return vs_train_new_over(def, NULL, group, out, err);
+}
+
+void vs_train_free(vs_train *train) {
+  if (!train) return;
+  vs_rollout_free(&train->rollout);
+  vs_league_free(&train->league);
+  if (train->engine.free) train->engine.free(train->engine.self);
+  vs_learner_free(&train->learner);
+  vs_pool_free(train->pool);
+  if (train->matches.free) train->matches.free(train->matches.self);
+  free(train->actor);
+  free(train);
+}
+
+static double seconds(void) { return 1e-6 * (double)vs_clock_monotonic_us(); }
+
+vs_status vs_train_collect(vs_train *t, const vs_reward_weights *weights, double *simulate_s, double *infer_s,
+                           vs_error *err) {
+  const float *parameters = t->learner.parameters;
+  vs_rollout_begin(&t->rollout);
+  for (int step = 0; step < t->def.steps; step++) {
+    double start = seconds();
+    vs_rollout_act(&t->rollout, step, parameters, &t->scale);
+    double acted = seconds();
+    vs_status s = t->matches.step(t->matches.self, &t->rollout.io, err);
+    if (s != VS_OK) return s;
+    double stepped = seconds();
+    vs_rollout_record(&t->rollout, step, parameters, &t->scale, weights);
+    *simulate_s += stepped - acted;
+    *infer_s += acted - start + seconds() - stepped;
+  }
+  return VS_OK;
+}
+
+vs_status vs_train_rescale(vs_train *t, const vs_ppo_batch *batch, vs_error *err) {
+  vs_rollout *r = &t->rollout;
+  double sums[3] = {batch->rows, 0.0, 0.0};
+  for (int i = 0; i < batch->rows; i++) {
+    sums[1] += r->target[i];
+    sums[2] += (double)r->target[i] * r->target[i];
+  }
+  if (t->group) {
+    vs_status s = t->group->sum_doubles(t->group->self, sums, 3, err);
+    if (s != VS_OK) return s;
+  }
+  vs_value_scale before = t->scale;
+  vs_value_scale_update(&t->scale, sums[0], sums[1], sums[2]);
+  vs_value_scale_fit(&before, &t->scale, &t->learner.net, t->learner.parameters);
+  for (int i = 0; i < batch->rows; i++) {
+    r->target[i] = (float)((r->target[i] - t->scale.mean) / t->scale.deviation);
+    r->old_value[i] = (float)((r->value[i] - t->scale.mean) / t->scale.deviation);
+  }
+  return VS_OK;
+}
+
+static double learning_rate(const vs_train *t) {
+  double part = t->def.transitions_m > 0.0 ? (double)t->transitions * 1e-6 / t->def.transitions_m : 0.0;
+  if (part > 1.0) part = 1.0;
+  return t->def.learning_rate + part * (t->def.learning_rate_end - t->def.learning_rate);
+}
+
+vs_status vs_train_sum_up(const vs_train *t, vs_rollout_stats *played, vs_ppo_stats *ppo, vs_error *err) {
+  if (!t->group) return VS_OK;
+  vs_status s = t->group->sum_doubles(t->group->self, (double *)played, sizeof *played / sizeof(double), err);
+  if (s == VS_OK) s = t->group->sum_doubles(t->group->self, (double *)ppo, sizeof *ppo / sizeof(double), err);
+  return s;
+}
+
+static void fill_report(const vs_train *t, const vs_learner_stats *learnt, vs_train_report *report) {
+  const vs_rollout_stats *played = &t->rollout.stats;
+  const vs_ppo_stats *ppo = &learnt->last;
+  double episodes = played->episodes > 0.0 ? played->episodes : 1.0;
+  report->update = (double)t->updates;
+  report->transitions = (double)t->transitions;
+  report->wall_s = t->wall_s;
+  report->reward = played->reward / played->transitions;
+  for (int k = 0; k < VS_REWARD_TERMS; k++) report->term[k] = played->terms[k] / played->transitions;
+  report->entropy = ppo->entropy / ppo->rows;
+  report->kl = ppo->kl / ppo->rows;
+  report->clip_fraction = ppo->clipped / ppo->rows;
+  report->policy_loss = ppo->policy_loss / ppo->rows;
+  report->value_loss = ppo->value_loss / ppo->rows;
+  report->explained_variance = learnt->explained_variance;
+  report->gradient_norm = learnt->gradient_norm;
+  report->learning_rate = t->learner.def.learning_rate;
+  report->episodes = played->episodes;
+  report->episode_s = played->episode_s / episodes;
+  report->goals_for = played->goals_for / episodes;
+  report->goals_against = played->goals_against / episodes;
+  const vs_league_window window = vs_league_results(&t->league);
+  report->frozen_score = vs_league_window_score(&window);
+  report->replacements = t->league.replacements;
+  report->pool = 0;
+  for (int i = 0; i < t->league.selves; i++) report->pool += t->league.self[i].in_pool;
+}
+
+// Counters and the league after an update.
+static vs_status advance(vs_train *t, int rows, vs_error *err) {
+  t->updates++;
+  t->transitions += (long long)rows * vs_group_size(t->group);
+  vs_net_extract_actor(&t->learner.net, t->learner.parameters, &t->rollout.actor, t->actor);
+  vs_league_window results = vs_league_results(&t->league);
+  vs_status s = VS_OK;
+  if (t->group) s = t->group->sum_doubles(t->group->self, (double *)&results, sizeof results / sizeof(double), err);
+  return s == VS_OK ? vs_league_after_update(&t->league, t->updates, t->actor, &results, NULL, err) : s;
+}
+
+vs_status vs_train_update(vs_train *train, vs_train_report *report, vs_error *err) {
+  double start = seconds();
+  *report = (vs_train_report){0};
+  vs_status s = VS_OK;
+  if (!train->started) s = train->matches.reset(train->matches.self, &train->rollout.io, err);
+  train->started = true;
+  const vs_reward_weights weights = vs_reward_mix_at(&train->reward_start, &train->reward_end, train->def.anneal_from_m,
+                                                     train->def.anneal_to_m, (double)train->transitions * 1e-6);
+  if (s == VS_OK) s = vs_train_collect(train, &weights, &report->simulate_s, &report->infer_s, err);
+  if (s != VS_OK) return s;
+  double played = seconds();
+  vs_ppo_batch batch = vs_rollout_finish(&train->rollout, train->learner.parameters, &train->scale);
+  s = vs_train_rescale(train, &batch, err);
+  vs_learner_stats learnt = {0};
+  train->learner.def.learning_rate = learning_rate(train);
+  uint64_t seed = vs_seed_mix((uint64_t)train->def.seed, (uint64_t)train->updates);
+  if (s == VS_OK) s = vs_learner_update(&train->learner, &batch, seed, &learnt, err);
+  if (s == VS_OK) s = vs_train_sum_up(train, &train->rollout.stats, &learnt.last, err);
+  if (s == VS_OK) s = advance(train, batch.rows, err);
+  if (s != VS_OK) return s;
+  double end = seconds();
+  report->learn_s = end - played;
+  report->transitions_per_s = batch.rows * vs_group_size(train->group) / (end - start);
+  train->wall_s += end - start;
+  fill_report(train, &learnt, report);
+  return VS_OK;
+}
+
+bool vs_train_done(const vs_train *train) {
+  return train->def.transitions_m > 0.0 && (double)train->transitions >= train->def.transitions_m * 1e6;
+}
+
+double vs_train_updates(const vs_train *train) { return (double)train->updates; }
+
+double vs_train_transitions(const vs_train *train) { return (double)train->transitions; }
+
+const vs_train_def *vs_train_settings(const vs_train *train) { return &train->def; }
+
+int vs_train_opponents(const vs_train *train, vs_train_opponent *out, int max) {
+  static const char *const names[] = {"self", "frozen", "pool"};
+  const vs_league *l = &train->league;
+  int count = l->def.shares < max ? l->def.shares : max;
+  for (int k = 0; k < count; k++) {
+    const vs_league_share *share = &l->def.share[k];
+    const vs_league_record *r = &l->record[k];
+    out[k] = (vs_train_opponent){share->kind == VS_OPPONENT_SCRIPT ? share->uri : names[share->kind],
+                                 r->episodes,
+                                 r->wins,
+                                 r->draws,
+                                 r->losses,
+                                 r->recent_score};
+  }
+  return count;
+}
+
+vs_status vs_train_export(const vs_train *train, const char *path, bool with_spread, const char *const *notes,
+                          vs_error *err) {
+  enum { OWN = 4, MAX = 24 };
+  char numbers[3][32];
+  snprintf(numbers[0], sizeof numbers[0], "%d", train->def.seed);
+  snprintf(numbers[1], sizeof numbers[1], "%lld", train->transitions);
+  snprintf(numbers[2], sizeof numbers[2], "%.0f", train->wall_s);
+  char settings[4096];
+  vs_train_def_text(&train->def, settings, sizeof settings);
+  vs_onnx_note note[MAX] = {
+      {"seed", numbers[0]}, {"transitions", numbers[1]}, {"wall_s", numbers[2]}, {"settings", settings}};
+  int count = OWN;
+  for (; notes && notes[0] && count < MAX; notes += 2) note[count++] = (vs_onnx_note){notes[0], notes[1]};
+  return vs_export_actor(path, &train->learner.net, train->learner.parameters, "vsss", with_spread, note, count, err);
+}

@@ -1,0 +1,200 @@
+// The settings of a training run: defaults, presets, ranges.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "league.h"
+#include "net.h"
+#include "reward_mix.h"
+#include "train_internal.h"
+#include "vsss/learn.h"
+#include "vsss/sim.h"
+
+vs_train_def vs_train_def_default(void) {
+  return (vs_train_def){
+      .drive = "planar",
+      .placement = "random",
+      .episode_s = 40.0,
+      .envs = 96,
+      .steps = 64,
+      .threads = 2,
+      .seed = 1,
+      .opponent = "self=0.6,pool=0.4",
+      .replace_score = 0.6,
+      .pool_size = 16,
+      .pool_every = 20,
+      .reward = "dense",
+      .reward_end = "goals",
+      .anneal_from_m = 10.0,
+      .anneal_to_m = 60.0,
+      .gamma = 0.98,
+      .lambda = 0.95,
+      .clip = 0.2,
+      .entropy = 0.003,
+      .value_weight = 0.5,
+      .value_scale = true,
+      .learning_rate = 4e-4,
+      .learning_rate_end = 1e-4,
+      .adam_epsilon = 1e-5,
+      .max_gradient_norm = 0.5,
+      .epochs = 3,
+      .minibatch = 4096,
+      .pieces = 4,
+      .hidden = "256,256",
+      .first_shape = 4.0,
+      .learner = "own",
+      .transitions_m = 200.0,
+  };
+}
+
+// Paper, Table 2 and section VII; what the paper leaves open is marked + or * in the design notes (paper.md): Adam's
+// epsilon, value clipping, gradient norm, entropy and value weights, minibatches, layer sizes.
+static vs_train_def paper(void) {
+  vs_train_def def = vs_train_def_default();
+  def.envs = 200;
+  def.steps = 214;
+  snprintf(def.opponent, sizeof def.opponent, "frozen");
+  def.replace_score = 0.6;
+  def.window_of_zeros = true;
+  snprintf(def.reward, sizeof def.reward, "paper");
+  snprintf(def.reward_end, sizeof def.reward_end, "paper");
+  def.anneal_from_m = def.anneal_to_m = 0.0;
+  def.gamma = 0.99;
+  def.entropy = 0.01;
+  def.clip_value = true;
+  def.value_scale = false;
+  def.learning_rate = def.learning_rate_end = 4e-4;
+  def.epochs = 5;
+  def.minibatch = 4280;
+  def.first_shape = 1.6931471805599453; // zero bias: 1 + softplus(0)
+  def.transitions_m = 160.0;
+  return def;
+}
+
+vs_status vs_train_def_preset(const char *name, vs_train_def *out, vs_error *err) {
+  if (!strcmp(name, "default"))
+    *out = vs_train_def_default();
+  else if (!strcmp(name, "paper"))
+    *out = paper();
+  else
+    return vs_fail(err, VS_USAGE, "unknown preset '%s'; there are: default, paper", name);
+  return VS_OK;
+}
+
+void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
+#define TEXT(field, help)                                                                                              \
+  { #field, VS_CONFIG_TEXT, d->field, sizeof d->field, 0, 0, help }
+#define WHOLE(field, min, max, help)                                                                                   \
+  { #field, VS_CONFIG_INT, &d->field, 0, min, max, help }
+#define REAL(field, min, max, help)                                                                                    \
+  { #field, VS_CONFIG_REAL, &d->field, 0, min, max, help }
+#define SWITCH(field, help)                                                                                            \
+  { #field, VS_CONFIG_BOOL, &d->field, 0, 0, 0, help }
+  const vs_config_key rows[] = {
+      TEXT(drive, "planar (fast) or contact (the reference)"),
+      TEXT(realism, "INI file of sensors and dynamics, drawn anew each episode"),
+      TEXT(placement, "restarts: random (legal poses) or paper"),
+      REAL(episode_s, 1, 600, "an episode ends here, or at the first goal"),
+      WHOLE(envs, 1, 4096, "matches side by side"),
+      WHOLE(steps, 1, 4096, "decisions of each match per update"),
+      WHOLE(threads, 1, 256, "threads"),
+      WHOLE(seed, 0, 2147483647, "everything random follows from it"),
+      TEXT(opponent, "mix of self, frozen, pool and players, such as self=0.6,pool=0.4"),
+      REAL(replace_score, -10, 10, "frozen: mean goal difference at which it is replaced"),
+      SWITCH(window_of_zeros, "frozen: the paper's window of 100 results, never cleared"),
+      WHOLE(pool_size, 1, 1000, "pool: earlier selves kept"),
+      WHOLE(pool_every, 1, 1000000, "pool: updates between two additions"),
+      TEXT(reward, "paper, dense or goals, then term=weight"),
+      TEXT(reward_end, "what the reward becomes"),
+      REAL(anneal_from_m, 0, 1e6, "millions of transitions where the change begins"),
+      REAL(anneal_to_m, 0, 1e6, "... and ends"),
+      REAL(gamma, 0.5, 0.99999, "discount per decision"),
+      REAL(lambda, 0, 1, "of the advantage estimate"),
+      REAL(clip, 0.01, 1, "of the probability ratio"),
+      REAL(entropy, 0, 1, "weight of the entropy bonus"),
+      REAL(value_weight, 0.001, 100, "weight of the value loss"),
+      SWITCH(clip_value, "clip the value like the ratio"),
+      SWITCH(value_scale, "value in units of the returns"),
+      REAL(learning_rate, 1e-7, 0.1, "of Adam, at the start"),
+      REAL(learning_rate_end, 1e-7, 0.1, "... at transitions_m"),
+      REAL(adam_epsilon, 1e-12, 0.1, "of Adam"),
+      REAL(max_gradient_norm, 1e-3, 1e6, "gradients are scaled down to it"),
+      WHOLE(epochs, 1, 100, "passes over a batch"),
+      WHOLE(minibatch, 16, 10000000, "rows of one gradient"),
+      WHOLE(pieces, 1, 64, "parts a minibatch is computed in (results depend on it, not on threads)"),
+      TEXT(hidden, "layer sizes of both networks"),
+      REAL(first_shape, 1.01, 100, "alpha = beta of the untrained policy"),
+      TEXT(learner, "own (kernels over BLAS) or torch"),
+      REAL(transitions_m, 0, 1e9, "millions of transitions to stop at; 0: until stopped"),
+      {.name = NULL},
+  };
+#undef TEXT
+#undef WHOLE
+#undef REAL
+#undef SWITCH
+  _Static_assert(sizeof rows / sizeof *rows <= VS_TRAIN_KEYS_MAX, "raise VS_TRAIN_KEYS_MAX");
+  memcpy(keys, rows, sizeof rows);
+}
+
+size_t vs_train_def_text(const vs_train_def *def, char *out, size_t size) {
+  vs_train_def copy = *def;
+  vs_config_key keys[VS_TRAIN_KEYS_MAX];
+  vs_train_schema(&copy, keys);
+  size_t used = 0;
+  for (const vs_config_key *k = keys; k->name; k++) {
+    char line[320];
+    int n = 0;
+    switch (k->type) {
+    case VS_CONFIG_INT: n = snprintf(line, sizeof line, "%s = %d\n", k->name, *(int *)k->target); break;
+    case VS_CONFIG_REAL: n = snprintf(line, sizeof line, "%s = %.17g\n", k->name, *(double *)k->target); break;
+    case VS_CONFIG_BOOL:
+      n = snprintf(line, sizeof line, "%s = %s\n", k->name, *(bool *)k->target ? "true" : "false");
+      break;
+    case VS_CONFIG_TEXT: n = snprintf(line, sizeof line, "%s = %s\n", k->name, (char *)k->target); break;
+    }
+    if (used + (size_t)n < size) memcpy(out + used, line, (size_t)n + 1);
+    used += (size_t)n;
+  }
+  return used;
+}
+
+vs_status vs_train_hidden(const vs_train_def *def, vs_net_shape *shape, vs_error *err) {
+  const char *text = def->hidden;
+  shape->layers = 0;
+  do {
+    char *end;
+    long width = strtol(text, &end, 10);
+    if (end == text || (*end && *end != ',') || width < 1 || width > 4096 || shape->layers == VS_NET_MAX_LAYERS)
+      return vs_fail(err, VS_USAGE, "hidden = %s: expected 1 to %d sizes of 1 to 4096, such as 256,256", def->hidden,
+                     VS_NET_MAX_LAYERS);
+    shape->width[shape->layers++] = (int)width;
+    text = *end ? end + 1 : end;
+  } while (*text);
+  return VS_OK;
+}
+
+vs_status vs_train_def_check(const vs_train_def *def, vs_error *err) {
+  vs_drive drive;
+  vs_placement_mode placement;
+  vs_net_shape shape;
+  vs_league_def league;
+  vs_reward_weights weights;
+  vs_status s = vs_drive_parse(def->drive, &drive, err);
+  if (s == VS_OK) s = vs_placement_parse(def->placement, &placement, err);
+  if (s == VS_OK) s = vs_train_hidden(def, &shape, err);
+  if (s == VS_OK) s = vs_league_parse(def->opponent, &league, err);
+  if (s == VS_OK) s = vs_reward_mix_parse(def->reward, &weights, err);
+  if (s == VS_OK) s = vs_reward_mix_parse(def->reward_end, &weights, err);
+  if (s != VS_OK) return s;
+  if (strcmp(def->learner, "own") != 0 && strcmp(def->learner, "torch") != 0)
+    return vs_fail(err, VS_USAGE, "learner = %s: expected own or torch", def->learner);
+  if (def->anneal_to_m < def->anneal_from_m)
+    return vs_fail(err, VS_USAGE, "anneal_to_m = %g: must not be below anneal_from_m = %g", def->anneal_to_m,
+                   def->anneal_from_m);
+  long long batch = 3LL * def->envs * def->steps;
+  if (def->minibatch > 2 * batch)
+    return vs_fail(err, VS_USAGE,
+                   "minibatch = %d: a batch of %d matches x %d steps has %lld rows with one side learning",
+                   def->minibatch, def->envs, def->steps, batch);
+  return VS_OK;
+}

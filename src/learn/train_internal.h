@@ -1,0 +1,43 @@
+// What train.c, checkpoint.c and train_def.c share.
+#ifndef VSSS_LEARN_TRAIN_INTERNAL_H
+#define VSSS_LEARN_TRAIN_INTERNAL_H
+
+#include "rollout.h"
+#include "vsss/learn.h"
+
+struct vs_train {
+  vs_train_def def;
+  vs_matches matches;
+  vs_pool *pool;
+  vs_learner learner;
+  vs_league league;
+  vs_rollout rollout;
+  vs_value_scale scale;
+  vs_reward_weights reward_start, reward_end;
+  float *actor;              // [rollout.actor.size]: the present actor, for the league
+  const vs_group *group;     // NULL: alone
+  vs_gradient_engine engine; // gradient NULL: our kernels
+  long long updates, transitions;
+  double wall_s;
+  bool started; // the matches were reset or restored
+};
+
+// A run over other matches than the simulator's (tests); takes them over, also on failure.
+vs_status vs_train_new_over(const vs_train_def *def, const vs_matches *matches, const vs_group *group, vs_train **out,
+                            vs_error *err);
+
+// Plays one batch; adds the time spent in the simulator and in the networks.
+vs_status vs_train_collect(vs_train *train, const vs_reward_weights *weights, double *simulate_s, double *infer_s,
+                           vs_error *err);
+// Targets and old values into units of the returns' deviation as known now; the critic's last layer follows.
+vs_status vs_train_rescale(vs_train *train, const vs_ppo_batch *batch, vs_error *err);
+// Sums over all ranks, in place; the structs are doubles throughout.
+vs_status vs_train_sum_up(const vs_train *train, vs_rollout_stats *played, vs_ppo_stats *ppo, vs_error *err);
+// Clones who plays both sides of `matches` (taken over): the loop of imitate.c over any matches.
+vs_status vs_train_imitate_over(vs_train *train, const vs_matches *matches, int updates,
+                                bool (*progress)(void *context, double part, double loss), void *context,
+                                vs_error *err);
+
+vs_status vs_train_hidden(const vs_train_def *def, vs_net_shape *shape, vs_error *err);
+
+#endif

@@ -1,0 +1,64 @@
+#include "train_matches.h"
+
+#include <stdlib.h>
+
+typedef struct sim_matches {
+  vs_model *model;
+  vs_vecenv *vec;
+} sim_matches;
+
+static vs_status reset(void *self, const vs_vecenv_buffers *buffers, vs_error *err) {
+  return vs_vecenv_reset(((sim_matches *)self)->vec, buffers, err);
+}
+static vs_status step(void *self, const vs_vecenv_buffers *buffers, vs_error *err) {
+  return vs_vecenv_step(((sim_matches *)self)->vec, buffers, err);
+}
+static size_t state_size(const void *self) { return vs_vecenv_state_size(((const sim_matches *)self)->vec); }
+static void save(const void *self, void *state) { vs_vecenv_save(((const sim_matches *)self)->vec, state); }
+static void restore(void *self, const void *state) { vs_vecenv_restore(((sim_matches *)self)->vec, state); }
+
+static void free_matches(void *self) {
+  sim_matches *m = self;
+  vs_vecenv_free(m->vec);
+  vs_model_free(m->model);
+  free(m);
+}
+
+static vs_status open_vecenv(sim_matches *m, const vs_train_def *def, int rank, vs_error *err) {
+  vs_drive drive;
+  vs_status s = vs_drive_parse(def->drive, &drive, err);
+  if (s != VS_OK) return s;
+  vs_model_def model = vs_model_def_default(drive);
+  s = vs_model_load(&model, &m->model, err);
+  if (s != VS_OK) return s;
+  vs_vecenv_def vec = {.env = vs_env_def_default(m->model),
+                       .envs = def->envs,
+                       .threads = def->threads,
+                       .seed = vs_seed_mix((uint64_t)def->seed, 2000 + (uint64_t)rank)};
+  vec.env.referee = vs_referee_def_training();
+  vec.env.referee.duration_s = def->episode_s;
+  vec.env.shuffle_adversaries = true;
+  s = vs_placement_parse(def->placement, &vec.env.referee.placement, err);
+  if (s == VS_OK && def->realism[0]) s = vs_realism_load(def->realism, &vec.env.realism, err);
+  return s == VS_OK ? vs_vecenv_new(&vec, &m->vec, err) : s;
+}
+
+vs_status vs_train_matches_open(const vs_train_def *def, const vs_league *league, int rank, const char *both,
+                                vs_matches *out, vs_error *err) {
+  sim_matches *m = calloc(1, sizeof *m);
+  if (!m) return vs_fail(err, VS_FAIL, "out of memory");
+  vs_status s = open_vecenv(m, def, rank, err);
+  for (int env = 0; s == VS_OK && env < def->envs; env++) {
+    for (int team = 0; both && s == VS_OK && team < VS_TEAMS; team++)
+      s = vs_vecenv_set_player(m->vec, env, (vs_team)team, both, err);
+    if (both || vs_league_kind(league, env) != VS_OPPONENT_SCRIPT) continue;
+    vs_team other = league->slot[env].learner == VS_BLUE ? VS_YELLOW : VS_BLUE;
+    s = vs_vecenv_set_player(m->vec, env, other, league->def.share[league->slot[env].share].uri, err);
+  }
+  if (s != VS_OK) {
+    free_matches(m);
+    return s;
+  }
+  *out = (vs_matches){m, reset, step, state_size, save, restore, free_matches};
+  return VS_OK;
+}

@@ -1,0 +1,225 @@
+// Tests src/learn/checkpoint.c and src/learn/archive.c
+#include <signal.h>
+#include <stdio.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "assert_near.h"
+#include "learn/archive.h"
+#include "learn/train_internal.h"
+#include "tiny_matches.h"
+
+static char folder[64], file[96], previous[112];
+
+static vs_train_def tiny_def(void) {
+  vs_train_def def = vs_train_def_default();
+  snprintf(def.hidden, sizeof def.hidden, "8,8");
+  snprintf(def.opponent, sizeof def.opponent, "self=0.4,pool=0.3,frozen=0.3");
+  def.envs = 10;
+  def.steps = 8;
+  def.minibatch = 100;
+  def.pool_every = 2;
+  def.pool_size = 2;
+  def.threads = 1;
+  def.replace_score = -1.0; // replaced whenever its window is full
+  def.window_of_zeros = true;
+  return def;
+}
+
+static vs_train *open_tiny(const vs_train_def *def) {
+  vs_matches matches = tiny_matches(def->envs, 7, 3);
+  vs_train *train = NULL;
+  assert_ok(vs_train_new_over(def, &matches, NULL, &train, err));
+  return train;
+}
+
+static void updates(vs_train *train, int count) {
+  vs_train_report report;
+  for (int i = 0; i < count; i++) assert_ok(vs_train_update(train, &report, err));
+}
+
+static void assert_same(const vs_train *a, const vs_train *b) {
+  size_t bytes = a->learner.net.size * sizeof(float);
+  assert_memory_equal(a->learner.parameters, b->learner.parameters, bytes);
+  assert_memory_equal(a->learner.mean, b->learner.mean, bytes);
+  assert_memory_equal(a->learner.square, b->learner.square, bytes);
+  assert_int_equal(a->transitions, b->transitions);
+  assert_int_equal(a->league.next_id, b->league.next_id);
+  assert_memory_equal(a->league.slot, b->league.slot, (size_t)a->league.slots * sizeof *a->league.slot);
+}
+
+static void a_resumed_run_continues_bit_for_bit(void **state) {
+  (void)state;
+  vs_train_def def = tiny_def(), read;
+  vs_train *straight = open_tiny(&def), *first = open_tiny(&def);
+  updates(straight, 9);
+  updates(first, 4);
+  assert_ok(vs_train_save(first, file, err));
+  vs_train_free(first);
+  assert_ok(vs_train_read_def(file, &read, err));
+  assert_memory_equal(&read, &def, sizeof def);
+  vs_train *second = open_tiny(&read);
+  char note[256];
+  assert_ok(vs_train_load(second, file, note, err));
+  assert_string_equal(note, "");
+  updates(second, 5);
+  assert_same(straight, second);
+  vs_train_free(straight);
+  vs_train_free(second);
+}
+
+static void read_bytes(const char *path, char **data, size_t *size) {
+  FILE *f = fopen(path, "rb");
+  assert_non_null(f);
+  *data = malloc(1 << 22);
+  *size = fread(*data, 1, 1 << 22, f);
+  fclose(f);
+}
+
+static void write_bytes(const char *path, const char *data, size_t size) {
+  FILE *f = fopen(path, "wb");
+  assert_non_null(f);
+  assert_int_equal(fwrite(data, 1, size, f), size);
+  fclose(f);
+}
+
+static void a_damaged_checkpoint_falls_back_to_the_one_before_and_says_so(void **state) {
+  (void)state;
+  vs_train_def def = tiny_def();
+  vs_train *train = open_tiny(&def);
+  updates(train, 2);
+  assert_ok(vs_train_save(train, file, err));
+  updates(train, 1);
+  assert_ok(vs_train_save(train, file, err)); // the first is now file.previous
+  char *data, note[256];
+  size_t size;
+  read_bytes(file, &data, &size);
+  for (int part = 0; part <= 10; part++) { // cut off anywhere, or one bit flipped
+    if (part == 10) data[size / 3] ^= 1;
+    write_bytes(file, data, part == 10 ? size : size * (size_t)part / 10);
+    vs_train *again = open_tiny(&def);
+    assert_ok(vs_train_load(again, file, note, err));
+    assert_int_equal(again->updates, 2);
+    assert_non_null(strstr(note, file));
+    assert_non_null(strstr(note, ".previous"));
+    vs_train_free(again);
+  }
+  write_bytes(previous, data, 10);
+  vs_error err = {0};
+  assert_int_equal(vs_train_load(train, file, note, &err), VS_FAIL);
+  assert_non_null(strstr(err.text, file));
+  free(data);
+  vs_train_free(train);
+}
+
+static void a_checkpoint_of_other_settings_is_refused(void **state) {
+  (void)state;
+  vs_train_def def = tiny_def();
+  vs_train *train = open_tiny(&def);
+  updates(train, 1);
+  assert_ok(vs_train_save(train, file, err));
+  vs_train_free(train);
+  snprintf(def.hidden, sizeof def.hidden, "8,9");
+  train = open_tiny(&def);
+  vs_error err = {0};
+  assert_int_equal(vs_train_load(train, file, NULL, &err), VS_FAIL);
+  assert_non_null(strstr(err.text, "'parameters' has"));
+  vs_train_free(train);
+}
+
+static void a_full_disk_leaves_the_old_checkpoint_and_names_the_file(void **state) {
+  (void)state;
+  vs_train_def def = tiny_def();
+  vs_train *train = open_tiny(&def);
+  vs_error err = {0};
+  assert_int_equal(vs_train_save(train, "/dev/full/checkpoint", &err), VS_FAIL);
+  assert_non_null(strstr(err.text, "/dev/full/checkpoint"));
+  vs_bytes bytes = {0};
+  vs_archive_begin(&bytes);
+  vs_archive_section(&bytes, "x", "abc", 3);
+  assert_ok(vs_archive_write(&bytes, file, err));
+  // A limit on the size of files stands for the full disk: the write fails half-way.
+  struct rlimit old, small;
+  getrlimit(RLIMIT_FSIZE, &old);
+  small = old;
+  small.rlim_cur = 2000;
+  signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &small);
+  vs_status s = vs_train_save(train, file, &err);
+  setrlimit(RLIMIT_FSIZE, &old);
+  assert_int_equal(s, VS_FAIL);
+  assert_non_null(strstr(err.text, file));
+  assert_non_null(strstr(err.text, "File too large"));
+  vs_bytes kept;
+  assert_ok(vs_archive_read(file, &kept, err));
+  vs_bytes_free(&kept);
+  vs_train_free(train);
+}
+
+// A child trains and saves after every update until it is killed; whatever the moment, a whole checkpoint is there and
+// continues exactly as an undisturbed run.
+static void a_run_killed_at_any_moment_resumes_exactly(void **state) {
+  (void)state;
+  vs_train_def def = tiny_def();
+  vs_train_report report;
+  for (int trial = 0; trial < 6; trial++) {
+    unlink(file);
+    unlink(previous);
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+      vs_train *train = open_tiny(&def);
+      for (;;)
+        if (vs_train_update(train, &report, NULL) != VS_OK || vs_train_save(train, file, NULL) != VS_OK) _exit(1);
+    }
+    while (access(previous, F_OK) != 0) usleep(500); // two saves are done
+    usleep((useconds_t)(1000 + 2377 * trial));
+    kill(child, SIGKILL);
+    int status;
+    waitpid(child, &status, 0);
+    assert_true(WIFSIGNALED(status));
+    vs_train *resumed = open_tiny(&def), *straight = open_tiny(&def);
+    char note[256];
+    assert_ok(vs_train_load(resumed, file, note, err));
+    assert_true(resumed->updates >= 1);
+    updates(straight, (int)resumed->updates);
+    assert_same(resumed, straight);
+    updates(resumed, 1);
+    updates(straight, 1);
+    assert_same(resumed, straight);
+    vs_train_free(resumed);
+    vs_train_free(straight);
+  }
+}
+
+static int set_up(void **state) {
+  (void)state;
+  snprintf(folder, sizeof folder, "build/checkpoint_test_%d", (int)getpid());
+  snprintf(file, sizeof file, "%s/checkpoint", folder);
+  snprintf(previous, sizeof previous, "%s.previous", file);
+  return mkdir(folder, 0755);
+}
+
+static int tear_down(void **state) {
+  (void)state;
+  char left[128];
+  static const char *const endings[] = {"", ".previous", ".next", ".next.tmp"};
+  for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+    snprintf(left, sizeof left, "%s%s", file, endings[i]);
+    unlink(left);
+  }
+  return rmdir(folder);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_resumed_run_continues_bit_for_bit),
+      cmocka_unit_test(a_damaged_checkpoint_falls_back_to_the_one_before_and_says_so),
+      cmocka_unit_test(a_checkpoint_of_other_settings_is_refused),
+      cmocka_unit_test(a_full_disk_leaves_the_old_checkpoint_and_names_the_file),
+      cmocka_unit_test(a_run_killed_at_any_moment_resumes_exactly),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
