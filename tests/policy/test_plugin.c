@@ -1,45 +1,8 @@
 // src/policy/plugin.c and src/policy/plugin_guard.c, and the example deploy/examples/plugin/team.c
-#include <limits.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
-#include "assert_near.h"
+#include "plugins/compile.h"
 #include "vsss/field.h"
 #include "vsss/geom.h"
-#include "vsss/paths.h"
 #include "vsss/policy.h"
-
-static char folder[64] = "/tmp/vsss_plugin_XXXXXX";
-static char root[PATH_MAX]; // of the checkout
-
-// Compiles tests/policy/plugins/bad.c with flags into folder/name.so, as a team would: with the public headers only.
-static void compile_bad(const char *name, const char *flags) {
-  char command[3 * PATH_MAX];
-  snprintf(command, sizeof command, "${CC:-cc} -O1 -w -fPIC -shared %s -I'%s/include' -o '%s/%s.so' '%s'", flags, root,
-           folder, name, "tests/policy/plugins/bad.c");
-  char whole[4 * PATH_MAX];
-  snprintf(whole, sizeof whole, "cd '%s' && %s", root, command);
-  if (system(whole) != 0) fail_msg("failed: %s", whole);
-}
-
-static int prepare(void **state) {
-  (void)state;
-  char path[PATH_MAX];
-  if (vs_path_find("tests/policy/plugins/bad.c", path, sizeof path, NULL) != VS_OK || !realpath(path, root)) return -1;
-  *strstr(root, "/tests/policy/plugins") = '\0';
-  if (!mkdtemp(folder)) return -1;
-  compile_bad("bad", "");
-  return 0;
-}
-
-static int clean_up(void **state) {
-  (void)state;
-  char command[128];
-  snprintf(command, sizeof command, "rm -rf '%s'", folder);
-  return system(command);
-}
 
 static void bad_uri(char *uri, size_t size, const char *name, const char *options) {
   snprintf(uri, size, "plugin:%s/%s.so%s%s", folder, name, *options ? "?" : "", options);
@@ -191,9 +154,8 @@ static void crash_at_the_end_of_a_match_does_not_end_the_program(void **state) {
 
 // The example, built by its own Makefile.
 static vs_player *example(const char *options) {
-  char command[3 * PATH_MAX], uri[256];
-  snprintf(command, sizeof command, "make -s -C '%s/deploy/examples/plugin' OUT='%s/team.so' >&2", root, folder);
-  assert_int_equal(system(command), 0);
+  compile_example();
+  char uri[256];
   snprintf(uri, sizeof uri, "plugin:%s/team.so%s", folder, options);
   vs_player *player;
   assert_ok(vs_player_open(uri, &player, err));
@@ -272,5 +234,5 @@ int main(void) {
       cmocka_unit_test(example_team_goes_behind_the_ball_and_through_it),
       cmocka_unit_test(example_team_refuses_an_option_it_does_not_know),
   };
-  return cmocka_run_group_tests(tests, prepare, clean_up);
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
