@@ -10,14 +10,15 @@ typedef struct bus_watch {
   vs_bus *bus;
   const char *uri[VS_TEAMS];
   int32_t seq[VS_CHANNELS];
-  vs_message message; // scratch
+  int64_t start_us, capture_us; // since the epoch: when this match began, and its present moment in simulated time
+  vs_message message;           // scratch
 } bus_watch;
 
 // A message that is lost is lost: the match goes on.
 static void send(bus_watch *w, vs_channel channel) {
   w->message.channel = channel;
   w->message.utime_us = 0;
-  w->message.utime_capture_us = vs_clock_wall_us();
+  w->message.utime_capture_us = w->capture_us;
   w->message.seq = w->seq[channel]++;
   vs_bus_publish(w->bus, &w->message, NULL);
 }
@@ -78,8 +79,12 @@ static void send_event(bus_watch *w, const vs_env *env, const vs_event *event) {
 static vs_status frame(void *state, const vs_watch_view *view, vs_error *err) {
   (void)err;
   bus_watch *w = state;
+  vs_world truth;
+  vs_env_truth(view->env, &truth);
+  if (truth.time_us == 0) w->start_us = vs_clock_wall_us();
+  w->capture_us = w->start_us + truth.time_us;
   send_worlds(w, view->env);
-  if (vs_env_game(view->env)->time_s > 0.0) {
+  if (truth.time_us > 0) {
     send_commands(w, view->env);
     send_decisions(w, view->env);
   }

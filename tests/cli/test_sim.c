@@ -3,6 +3,7 @@
 
 #include "assert_near.h"
 #include "interrupt_vsss.h"
+#include "vsss/bus.h"
 
 static vsss_run run, other;
 
@@ -10,6 +11,13 @@ static vsss_run run, other;
 static void play(vsss_run *r, const char *arguments) {
   vsss(r, arguments);
   if (r->status != 0) fail_msg("vsss %s: status %d: %s", arguments, r->status, r->err);
+}
+
+static bool has_lcm(void) {
+  vs_bus *bus = NULL;
+  bool opened = vs_bus_open("memq://", &bus, NULL) == VS_OK;
+  vs_bus_close(bus);
+  return opened;
 }
 
 // From the first '{' to the last '}', with nothing before or after but a newline, brackets in pairs.
@@ -64,7 +72,8 @@ static void several_matches_are_the_same_for_1_and_3_threads_and_with_watchers(v
   assert_one_json_object(run.out);
   play(&other, "sim --matches 3 --seconds 2 --json --threads 3 --drive planar");
   assert_string_equal(value_of(run.out, "summary"), value_of(other.out, "summary"));
-  play(&other, "sim --matches 3 --seconds 2 --json --drive planar --lcm 'memq://'");
+  play(&other, has_lcm() ? "sim --matches 3 --seconds 2 --json --drive planar --lcm 'memq://'"
+                         : "sim --matches 3 --seconds 2 --json --drive planar --realtime");
   assert_string_equal(value_of(run.out, "summary"), value_of(other.out, "summary"));
   play(&other, "sim --matches 3 --seconds 2 --json --threads 1 --drive planar --seed 2");
   assert_string_not_equal(value_of(run.out, "summary"), value_of(other.out, "summary"));
@@ -92,6 +101,28 @@ static void an_interrupted_match_prints_what_is_done(void **state) {
   assert_int_equal(run.status, 0);
   assert_non_null(strstr(run.out, "stopped: "));
   assert_non_null(strstr(run.out, "goals"));
+}
+
+// Two seconds: the start and 60 frames of truth and state, 60 commands of each team, the referee's kick-off and end.
+static void what_is_published_can_be_replayed(void **state) {
+  (void)state;
+  if (!has_lcm()) {
+    print_message("note: 1 checks not run: built without LCM\n");
+    return;
+  }
+  char folder[] = "/tmp/vsss_sim_XXXXXX", arguments[512], remove[64];
+  assert_non_null(mkdtemp(folder));
+  snprintf(arguments, sizeof arguments,
+           "sim --seconds 2 --drive planar --blue zero: --yellow random: --lcm 'file://%s/log?mode=w'", folder);
+  play(&run, arguments);
+  snprintf(arguments, sizeof arguments, "replay %s/log --json", folder);
+  play(&run, arguments);
+  assert_non_null(strstr(run.out, "VSSS_TRUTH\", \"messages\": 61"));
+  assert_non_null(strstr(run.out, "VSSS_STATE\", \"messages\": 61"));
+  assert_non_null(strstr(run.out, "VSSS_CMD\", \"messages\": 120"));
+  assert_non_null(strstr(run.out, "VSSS_REFEREE\", \"messages\": 2"));
+  snprintf(remove, sizeof remove, "rm -r '%s'", folder);
+  assert_int_equal(system(remove), 0);
 }
 
 static void help_names_every_flag(void **state) {
@@ -136,6 +167,7 @@ int main(void) {
       cmocka_unit_test(several_matches_end_in_rates_with_intervals),
       cmocka_unit_test(realtime_keeps_the_pace_of_the_clock),
       cmocka_unit_test(an_interrupted_match_prints_what_is_done),
+      cmocka_unit_test(what_is_published_can_be_replayed),
       cmocka_unit_test(help_names_every_flag),
       cmocka_unit_test(bad_requests_are_refused_in_one_line),
       cmocka_unit_test(an_lcm_url_that_fails_is_an_error),
