@@ -35,7 +35,7 @@ vs_status vs_sim_new(const vs_model *model, vs_sim **out, vs_error *err) {
   sim->model = model;
   sim->mj = model->mj;
   vs_status status = vs_mujoco_call(make_data, sim, err);
-  if (status == VS_OK && !sim->data) status = vs_fail(err, VS_FAIL, "out of memory");
+  if (status == VS_OK && (!sim->data || !vs_nearby_new(sim))) status = vs_fail(err, VS_FAIL, "out of memory");
   if (status != VS_OK) {
     vs_sim_free(sim);
     return status;
@@ -49,6 +49,7 @@ void vs_sim_free(vs_sim *sim) {
   if (!sim) return;
   if (sim->data) mj_deleteData(sim->data);
   if (sim->own) mj_deleteModel(sim->own);
+  free(sim->view_numbers);
   free(sim);
 }
 
@@ -75,7 +76,7 @@ void vs_sim_reset(vs_sim *sim, const vs_sim_params *params) {
   sim->lag = tau > 0 ? 1 - exp(-sim->mj->opt.timestep / tau) : 1;
   sim->push_rng = vs_rng_make(sim->params.push_seed, 0);
   sim->out_of_memory = !vs_randomize_apply(sim);
-  sim->data->time = 0;
+  vs_nearby_reset(sim);
   sim->frame = 0;
   memcpy(sim->data->qpos, sim->mj->qpos0, sizeof(double) * sim->mj->nq); // the wheels' angles, that placing leaves
   vs_sim_place(sim, &kick_off);
@@ -131,7 +132,7 @@ static void step_frame(void *context) {
   vs_sim *sim = work->sim;
   for (int i = 0; i < sim->model->substeps; i++) {
     vs_drive_step(sim, work->target);
-    mj_step(sim->mj, sim->data);
+    mj_step(vs_nearby_view(sim), sim->data);
   }
 }
 

@@ -7,7 +7,8 @@
 #include "vsss/rng.h"
 #include "vsss/sim.h"
 
-#define ROBOTS (VS_TEAMS * VS_TEAM_SIZE) // numbered team * VS_TEAM_SIZE + index
+#define ROBOTS     (VS_TEAMS * VS_TEAM_SIZE) // numbered team * VS_TEAM_SIZE + index
+#define PAIRS_MOST 256
 enum { LEFT, RIGHT, SIDES };
 
 // Addresses into qpos, qvel and ctrl, looked up by name once.
@@ -24,6 +25,7 @@ struct vs_model {
   int substeps;
   robot_address robot[ROBOTS];
   int ball_body, ball_qpos, ball_qvel;
+  uint32_t pair_bits[PAIRS_MOST]; // nearby.c: what must be near for a contact pair to be worth a test
 };
 
 // The planar drive's wheels and what both drives remember of the commands. Plain data.
@@ -35,8 +37,12 @@ typedef struct wheel_state {
 
 struct vs_sim {
   const vs_model *model;
-  const mjModel *mj; // model->mj, or own where this episode's masses or frictions are not the nominal ones
-  mjModel *own;      // NULL until first needed
+  const mjModel *mj;    // model->mj, or own where this episode's masses or frictions are not the nominal ones
+  mjModel *own;         // NULL until first needed
+  mjModel view;         // mj with only the contact pairs that are near in this step; shares all other arrays with mj
+  double *view_numbers; // its pairs
+  uint32_t view_bits;
+  bool test_all_pairs; // for the test that compares
   mjData *data;
   vs_sim_params params;
   double lag; // share of the way to the commanded speed that target_radps goes in one step; 1: no lag
@@ -51,5 +57,11 @@ struct vs_sim {
 
 // randomize.c: makes sim->mj fit sim->params. False: out of memory, sim->mj is the nominal model.
 bool vs_randomize_apply(vs_sim *sim);
+
+// nearby.c
+void vs_nearby_bind(vs_model *model);       // at load
+bool vs_nearby_new(vs_sim *sim);            // false: out of memory
+void vs_nearby_reset(vs_sim *sim);          // after sim->mj changed
+const mjModel *vs_nearby_view(vs_sim *sim); // the model to step with from the present positions
 
 #endif

@@ -215,6 +215,8 @@ static vs_status bind(vs_model *model, const char *path, vs_error *err) {
   TRY(expect(path, "ball", "radius", mj->geom_size[3 * geom], VS_BALL_RADIUS_M, 1e-9, err));
   TRY(expect(path, "ball", "mass", mj->body_mass[model->ball_body], VS_BALL_MASS_KG, 1e-9, err));
   for (int i = 0; i < ROBOTS; i++) TRY(bind_robot(model, path, i, err));
+  if (mj->npair > PAIRS_MOST)
+    return vs_fail(err, VS_FAIL, "%s: %d contact pairs, at most %d", path, mj->npair, PAIRS_MOST);
   return VS_OK;
 }
 
@@ -242,6 +244,7 @@ vs_status vs_model_load(const vs_model_def *def, vs_model **out, vs_error *err) 
     return status;
   }
   model->mj->opt.timestep = 1.0 / 30.0 / model->substeps;
+  vs_nearby_bind(model);
   *out = model;
   return VS_OK;
 }
