@@ -97,8 +97,13 @@ static vs_status play_pairing(eval_command *c, const vs_env_def *env, vs_error *
                        .context = c};
   for (int t = 0; t < VS_TEAMS; t++) def.env.player[t] = p->uri[t];
   vs_status s = vs_series_play(&def, p->results, err);
-  if (s == VS_OK) return vs_series_sum_up(p->results, c->matches, &p->summary, err);
-  return vs_fail_prefix(err, "%s against %s", p->uri[VS_BLUE], p->uri[VS_YELLOW]);
+  if (s != VS_OK) vs_fail_prefix(err, "%s against %s", p->uri[VS_BLUE], p->uri[VS_YELLOW]);
+  // What is done counts, even where a match failed.
+  vs_status summed = vs_series_sum_up(p->results, c->matches, &p->summary, s == VS_OK ? err : NULL);
+  vs_progress_clear(&c->progress);
+  if (!c->round_robin && p->summary.matches > 0) vs_report_table_row(stdout, p->uri[VS_YELLOW], &p->summary);
+  fflush(stdout);
+  return s != VS_OK ? s : summed;
 }
 
 // A URI that does not open should fail before the first match, not after an hour of them.
@@ -114,12 +119,7 @@ static vs_status check_players(const eval_command *c, vs_error *err) {
   return VS_OK;
 }
 
-static void print_pairings(const eval_command *c) {
-  printf("\n");
-  vs_report_table_head(stdout);
-  for (int i = 0; i < c->count; i++)
-    if (c->pairings[i].summary.matches > 0)
-      vs_report_table_row(stdout, c->pairings[i].uri[VS_YELLOW], &c->pairings[i].summary);
+static void print_restarts(const eval_command *c) {
   printf("\n");
   vs_report_restarts_head(stdout);
   for (int i = 0; i < c->count; i++)
@@ -154,7 +154,7 @@ static const pairing *find_pairing(const eval_command *c, int blue, int yellow) 
 static void print_cross_table(const eval_command *c) {
   double rating[MAX_PLAYERS];
   rate(c, rating);
-  printf("\nwin/draw/loss %% and score of the row as blue against the column as yellow\n\n%-16s", "");
+  printf("win/draw/loss %% and score of the row as blue against the column as yellow\n\n%-16s", "");
   for (int j = 0; j < c->players; j++) printf("  %-20.20s", c->player[j]);
   printf("  %6s\n", "Elo");
   for (int i = 0; i < c->players; i++) {
@@ -236,7 +236,8 @@ static void print_head(const eval_command *c) {
            about);
   else
     printf("%s as blue, %d matches against each: %s\n", c->blue, c->matches, about);
-  printf("blue attacks +x and kicks off first; sides are not swapped; a match ends at 10 goals' difference\n");
+  printf("blue attacks +x and kicks off first; sides are not swapped; a match ends at 10 goals' difference\n\n");
+  if (!c->round_robin) vs_report_table_head(stdout);
   fflush(stdout);
 }
 
@@ -249,8 +250,7 @@ static vs_status evaluate(eval_command *c, const vs_env_def *env, FILE *json, FI
     played = play_pairing(c, env, err);
   vs_progress_clear(&c->progress);
 
-  // What is done is shown and written even when a match failed.
-  c->round_robin ? print_cross_table(c) : print_pairings(c);
+  c->round_robin ? print_cross_table(c) : print_restarts(c);
   if (c->done < c->count * c->matches) printf("\nstopped: %d of %d matches\n", c->done, c->count * c->matches);
   double played_s = 0.0, wall_s = (double)(vs_clock_monotonic_us() - start_us) * 1e-6;
   for (int i = 0; i < c->count; i++) played_s += c->pairings[i].summary.mean_time_s * c->pairings[i].summary.matches;

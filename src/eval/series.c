@@ -80,6 +80,7 @@ static void *play(void *argument) {
   for (int index; (index = take(s)) >= 0;) {
     vs_match_result *result = &s->results[index];
     if (vs_match_play(env, vs_seed_mix(s->def->seed, (uint64_t)index), asked_to_go_on, s, result, &error) != VS_OK) {
+      vs_fail_prefix(&error, "match %d", index);
       stop_with(s, &error);
       break;
     }
