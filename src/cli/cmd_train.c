@@ -15,9 +15,10 @@
 #include "vsss/learn.h"
 
 typedef struct options {
-  const char *preset, *config, *run, *resume, *export, *untrained, *opponent, *realism, *learner, *imitate;
-  int seed, threads, imitate_updates;
-  double minutes, transitions_m, checkpoint_min;
+  const char *preset, *config, *run, *resume, *export, *untrained, *opponent, *realism, *learner, *imitate,
+      *eval_against;
+  int seed, threads, imitate_updates, eval_matches;
+  double minutes, transitions_m, checkpoint_min, eval_min;
   vs_flag_list set;
 } options;
 
@@ -29,7 +30,8 @@ typedef struct session {
   vs_train *train;
   vs_journal *journal;
   vs_train_report report;
-  double start_s, checkpoint_s, line_s;
+  double start_s, checkpoint_s, eval_s, line_s;
+  char scores[256]; // of the last evaluation, for the policy's metadata
   vs_progress progress;
 } session;
 
@@ -89,7 +91,7 @@ static vs_status save(session *s, vs_error *err) {
   char path[PATH_MAX];
   snprintf(path, sizeof path, "%s/checkpoint", s->folder);
   vs_status status = vs_train_save(s->train, path, err);
-  const char *const notes[] = {"command", s->command, "commit", s->commit, NULL};
+  const char *const notes[] = {"command", s->command, "commit", s->commit, "score", s->scores, NULL};
   snprintf(path, sizeof path, "%s/policy.onnx", s->folder);
   if (status == VS_OK) status = vs_train_export(s->train, path, true, notes, err);
   if (status == VS_OK && s->opt->export) status = vs_train_export(s->train, s->opt->export, true, notes, err);
@@ -148,18 +150,53 @@ static vs_status imitate(session *s, vs_error *err) {
   return status;
 }
 
+static bool not_interrupted(void *context) {
+  (void)context;
+  return !vs_cli_interrupted();
+}
+
+static vs_status evaluate_against(session *s, const char *opponent, const char *policy, vs_error *err) {
+  vs_journal_eval eval;
+  vs_status status = vs_train_evaluate(policy, opponent, s->opt->eval_matches, vs_train_settings(s->train)->threads, 1,
+                                       not_interrupted, NULL, &eval, err);
+  if (status != VS_OK || eval.matches < s->opt->eval_matches) return status;
+  size_t used = strlen(s->scores);
+  snprintf(s->scores + used, sizeof s->scores - used, "%s%s %.2f", used ? ", " : "", opponent, eval.score);
+  vs_progress_clear(&s->progress);
+  printf("%6.1f min  %.2f M  against %-10s won %3.0f drawn %3.0f lost %3.0f %%  goals %.2f : %.2f  score %+.2f\n",
+         s->report.wall_s / 60.0, s->report.transitions * 1e-6, opponent, 100 * eval.win, 100 * eval.draw,
+         100 * eval.loss, eval.goals_for, eval.goals_against, eval.score);
+  fflush(stdout);
+  return vs_journal_add_eval(s->journal, &s->report, &eval, err);
+}
+
+// The policy as it is now against each of --eval-against, on the contact drive.
+static vs_status evaluate(session *s, vs_error *err) {
+  char policy[PATH_MAX], names[256];
+  snprintf(policy, sizeof policy, "%s/policy.onnx", s->folder);
+  snprintf(names, sizeof names, "%s", s->opt->eval_against);
+  vs_status status = save(s, err);
+  s->scores[0] = '\0';
+  char *rest = names;
+  for (char *one; status == VS_OK && (one = strsep(&rest, ",")) != NULL;)
+    if (*one) status = evaluate_against(s, one, policy, err);
+  s->eval_s = now_s();
+  return status;
+}
+
 // What rank 0 does after an update.
 static vs_status record(session *s, vs_error *err) {
   vs_status status = vs_journal_add(s->journal, &s->report, err);
   if (status != VS_OK) return status;
   show(s);
+  if (s->opt->eval_min > 0.0 && now_s() - s->eval_s >= 60.0 * s->opt->eval_min) return evaluate(s, err);
   return now_s() - s->checkpoint_s >= 60.0 * s->opt->checkpoint_min ? save(s, err) : VS_OK;
 }
 
 static vs_status run(session *s, vs_error *err) {
   vs_status status = VS_OK;
   bool stop = vs_train_done(s->train);
-  s->start_s = s->checkpoint_s = now_s();
+  s->start_s = s->checkpoint_s = s->eval_s = now_s();
   vs_progress_start(&s->progress);
   while (status == VS_OK && !stop) {
     status = vs_train_update(s->train, &s->report, err);
@@ -227,7 +264,13 @@ static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
 }
 
 int cmd_train(int argc, char **argv) {
-  options o = {.preset = "default", .run = "runs/vsss", .seed = -1, .checkpoint_min = 5.0, .imitate_updates = 40};
+  options o = {.preset = "default",
+               .run = "runs/vsss",
+               .seed = -1,
+               .checkpoint_min = 5.0,
+               .imitate_updates = 40,
+               .eval_against = "random:,inf:,emc:",
+               .eval_matches = 20};
   const vs_flag flags[] = {
       {"preset", VS_FLAG_TEXT, &o.preset, "NAME", "default (our recipe) or paper (its Table 2)", 0, 0},
       {"config", VS_FLAG_TEXT, &o.config, "FILE", "settings as an INI file", 0, 0},
@@ -243,6 +286,9 @@ int cmd_train(int argc, char **argv) {
       {"minutes", VS_FLAG_REAL, &o.minutes, "MIN", "stop after; 0: no limit", 0, 1e6},
       {"transitions", VS_FLAG_REAL, &o.transitions_m, "MILLION", "stop at; 0: as set", 0, 1e9},
       {"checkpoint-every", VS_FLAG_REAL, &o.checkpoint_min, "MIN", "minutes between checkpoints", 0.001, 1e6},
+      {"eval-every", VS_FLAG_REAL, &o.eval_min, "MIN", "matches on the contact drive this often; 0: never", 0, 1e6},
+      {"eval-against", VS_FLAG_TEXT, &o.eval_against, "URIS", "... against these players", 0, 0},
+      {"eval-matches", VS_FLAG_INT, &o.eval_matches, "N", "... so many each", 1, 100000},
       {"run", VS_FLAG_TEXT, &o.run, "FOLDER", "a new run: checkpoint, policy.onnx, CSV, TensorBoard", 0, 0},
       {"resume", VS_FLAG_TEXT, &o.resume, "FOLDER", "continue the run in this folder", 0, 0},
       {"export", VS_FLAG_TEXT, &o.export, "FILE", "write the policy here too", 0, 0},

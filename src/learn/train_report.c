@@ -1,4 +1,6 @@
 // The columns of a training report: one table for CSV, TensorBoard and the status line.
+#include <string.h>
+
 #include "vsss/learn.h"
 
 #define COLUMN(field, tag)                                                                                             \
@@ -47,5 +49,7 @@ const vs_train_column *vs_train_columns(int *count) {
 }
 
 double vs_train_value(const vs_train_report *report, const vs_train_column *column) {
-  return *(const double *)((const char *)report + column->offset);
+  double value;
+  memcpy(&value, (const char *)report + column->offset, sizeof value);
+  return value;
 }
