@@ -238,6 +238,7 @@ static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
   for (int i = 0; i < argc && used < sizeof s.command; i++)
     used += (size_t)snprintf(s.command + used, sizeof s.command - used, " %s", argv[i]);
   find_commit(s.commit, sizeof s.commit);
+  vs_cli_catch_interrupts();
   vs_train_def def;
   vs_status status = settings(o, &def, err);
   if (status == VS_OK) status = vs_group_open(&s.group, err);
@@ -249,7 +250,6 @@ static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
            def.threads, def.drive, def.opponent);
     fflush(stdout);
   }
-  vs_cli_catch_interrupts();
   if (status == VS_OK && o->imitate) status = imitate(&s, err);
   if (status == VS_OK) status = run(&s, err);
   if (status == VS_OK && s.first)

@@ -1,0 +1,188 @@
+// src/cli/cmd_train.c and src/cli/cmd_plot.c, through the real binary
+#include <stdbool.h>
+#include <sys/stat.h>
+
+#include "assert_near.h"
+#include "interrupt_vsss.h"
+
+// A run that takes a moment: few matches, small networks.
+#define SMALL "--threads 1 --set envs=4 --set steps=16 --set minibatch=64 --set hidden=16,16 "
+
+static vsss_run run;
+static char folder[64], text[65536];
+
+static int make_folder(void **state) {
+  (void)state;
+  snprintf(folder, sizeof folder, "/tmp/vsss_train_XXXXXX");
+  return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state) {
+  (void)state;
+  char command[128];
+  snprintf(command, sizeof command, "rm -r '%s'", folder);
+  return system(command) == 0 ? 0 : -1;
+}
+
+static const char *with_folder(const char *format) {
+  static char arguments[1024];
+  snprintf(arguments, sizeof arguments, format, folder, folder);
+  return arguments;
+}
+
+static void train(const char *format) {
+  vsss(&run, with_folder(format));
+  if (run.status != 0) fail_msg("vsss %s: status %d: %s", with_folder(format), run.status, run.err);
+}
+
+static bool exists(const char *format) { return access(with_folder(format), F_OK) == 0; }
+
+static const char *content(const char *format) {
+  FILE *f = fopen(with_folder(format), "r");
+  if (!f) fail_msg("%s was not written", with_folder(format));
+  vsss_read_all(f, text, sizeof text);
+  fclose(f);
+  return text;
+}
+
+static int lines(const char *of) {
+  int count = 0;
+  for (; *of; of++) count += *of == '\n';
+  return count;
+}
+
+// 4 matches, half of them (0.6 of 4 is 2, 0.4 is 2) with both sides learning: 18 rows x 16 steps = 288 transitions.
+static void a_run_leaves_checkpoint_policy_tables_and_continues(void **state) {
+  (void)state;
+  train("train --run %s/a " SMALL "--transitions 0.001");
+  assert_non_null(strstr(run.out, "done at 0.00 M transitions"));
+  assert_int_equal(lines(content("%s/a/progress.csv")), 1 + 4); // 288 x 4 is the first above 1000
+  assert_true(exists("%s/a/checkpoint") && exists("%s/a/policy.onnx"));
+  assert_non_null(strstr(content("%s/a/settings.ini"), "hidden = 16,16"));
+  train("train --resume %s/a --transitions 0.002");
+  assert_int_equal(lines(content("%s/a/progress.csv")), 1 + 7); // 288 x 7 is the first above 2000
+  assert_true(exists("%s/a/checkpoint.previous"));
+  train("plot %s/a --svg");
+  assert_true(exists("%s/a/reward.svg"));
+  assert_non_null(strstr(content("%s/a/reward.svg"), "<svg"));
+  train("sim --blue onnx:%s/a/policy.onnx --yellow zero: --seconds 2 --drive planar");
+  assert_refused(with_folder("train --run %s/a " SMALL), 2, "holds a run: continue it with --resume");
+}
+
+static void two_runs_of_one_seed_are_the_same(void **state) {
+  (void)state;
+  static char first[65536];
+  train("train --run %s/s1 " SMALL "--transitions 0.001 --seed 7");
+  train("train --run %s/s2 " SMALL "--transitions 0.001 --seed 7 --threads 2");
+  snprintf(first, sizeof first, "%s", content("%s/s1/progress.csv"));
+  content("%s/s2/progress.csv");
+  // All but the columns of time: compare the tail of the last line, from the reward on.
+  char *a = strrchr(first, ','), *b = strrchr(text, ',');
+  for (int column = 0; column < 20; column++) {
+    while (*--a != ',') {
+    }
+    while (*--b != ',') {
+    }
+  }
+  assert_string_equal(a, b);
+}
+
+static void interrupting_a_run_saves_it(void **state) {
+  (void)state;
+  vsss_interrupt(&run, with_folder("train --run %s/i " SMALL), "training in");
+  assert_int_equal(run.status, 0);
+  assert_non_null(strstr(run.out, "stopped at"));
+  assert_true(exists("%s/i/checkpoint"));
+}
+
+static void evaluation_is_written_beside_the_progress(void **state) {
+  (void)state;
+  train("train --run %s/e " SMALL "--transitions 0.0005 --eval-every 0.000001 --eval-against zero: --eval-matches 1");
+  assert_true(lines(content("%s/e/eval.csv")) >= 2);
+  assert_non_null(strstr(text, ",zero:,1,"));
+  train("plot %s/e");
+  assert_true(exists("%s/e/eval_score.png"));
+}
+
+static void a_script_is_imitated_before_the_run(void **state) {
+  (void)state;
+  train("train --run %s/m " SMALL "--transitions 0.0003 --imitate zero: --imitate-updates 3 --opponent emc:");
+  assert_non_null(strstr(run.out, "imitating zero:"));
+}
+
+static void a_damaged_checkpoint_is_named_and_the_one_before_continues(void **state) {
+  (void)state;
+  train("train --run %s/d " SMALL "--transitions 0.0003");
+  train("train --resume %s/d --transitions 0.0006");
+  assert_int_equal(truncate(with_folder("%s/d/checkpoint"), 1000), 0);
+  train("train --resume %s/d --transitions 0.0012");
+  assert_non_null(strstr(run.out, "d/checkpoint: truncated or damaged"));
+  assert_int_equal(truncate(with_folder("%s/d/checkpoint"), 0), 0);
+  assert_int_equal(truncate(with_folder("%s/d/checkpoint.previous"), 10), 0);
+  assert_refused(with_folder("train --resume %s/d"), 1, "d/checkpoint: not a checkpoint");
+}
+
+static void wrong_settings_are_refused_with_the_allowed_range(void **state) {
+  (void)state;
+  assert_refused("train --preset fast", 2, "there are: default, paper");
+  assert_refused("train --set gamma=1.5", 2, "allowed are 0.5 to 0.99999");
+  assert_refused("train --set clip=0", 2, "allowed are 0.01 to 1");
+  assert_refused("train --set epochs=0", 2, "allowed are 1 to 100");
+  assert_refused("train --set learning_rate=nan", 2, "expected a number");
+  assert_refused("train --set learnig_rate=1e-3", 2, "did you mean 'learning_rate'");
+  assert_refused("train --set hidden=256,0", 2, "1 to 4 sizes of 1 to 4096");
+  assert_refused("train --set minibatch=1000000", 2, "minibatch = 1000000");
+  assert_refused("train --set drive=hover", 2, "hover");
+  assert_refused("train --set reward=glory", 2, "expected paper, dense or goals");
+  assert_refused("train --set reward=dense,fame=1", 2, "own_distance");
+  assert_refused("train --opponent nobody", 2, "opponent 'nobody'");
+  assert_refused("train --learner brain", 2, "own or torch");
+  assert_refused("train --resume /nowhere", 1, "/nowhere/checkpoint");
+  assert_refused("train --run /proc/none", 1, "/proc/none");
+  assert_refused("plot", 2, "name one run's folder");
+  assert_refused("plot /nowhere", 1, "/nowhere/progress.csv");
+}
+
+// Two processes: as root, Open MPI wants two variables.
+static void two_ranks_train_together_and_a_dead_one_ends_the_run(void **state) {
+  (void)state;
+  char binary[4096], command[8192];
+  if (system("command -v mpirun >/dev/null") != 0 || access("build/lib/vsss_mpi.so", F_OK) != 0) {
+    print_message("note: 1 check not run: no mpirun, or a build without MPI\n");
+    return;
+  }
+  vsss_binary(binary, sizeof binary);
+  setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+  setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  setenv("LSAN_OPTIONS", "detect_leaks=0", 1); // Open MPI's own
+  snprintf(command, sizeof command,
+           "timeout 120 mpirun --oversubscribe -n 2 '%s' train --run %s/p " SMALL
+           "--transitions 0.001 </dev/null >%s/p.out 2>&1",
+           binary, folder, folder);
+  if (system(command) != 0) fail_msg("%s", content("%s/p.out"));
+  assert_non_null(strstr(content("%s/p.out"), "2 ranks, each:"));
+  assert_int_equal(lines(content("%s/p/progress.csv")), 1 + 2); // 2 x 288 an update
+  // Rank 1 is killed: mpirun ends, and what rank 0 saved last is whole.
+  snprintf(
+      command, sizeof command,
+      "timeout 120 mpirun --oversubscribe -n 2 sh -c '[ $OMPI_COMM_WORLD_RANK = 0 ] || (sleep 4; kill -9 $$) & exec "
+      "%s train --resume %s/p --transitions 1000 --checkpoint-every 0.001' </dev/null >%s/p.out 2>&1",
+      binary, folder, folder);
+  assert_int_not_equal(system(command), 0);
+  train("train --resume %s/p --transitions 0.001");
+  assert_null(strstr(run.out, "damaged"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_run_leaves_checkpoint_policy_tables_and_continues),
+      cmocka_unit_test(two_runs_of_one_seed_are_the_same),
+      cmocka_unit_test(interrupting_a_run_saves_it),
+      cmocka_unit_test(evaluation_is_written_beside_the_progress),
+      cmocka_unit_test(a_script_is_imitated_before_the_run),
+      cmocka_unit_test(a_damaged_checkpoint_is_named_and_the_one_before_continues),
+      cmocka_unit_test(wrong_settings_are_refused_with_the_allowed_range),
+      cmocka_unit_test(two_ranks_train_together_and_a_dead_one_ends_the_run),
+  };
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
