@@ -101,6 +101,8 @@ static void darken(mjModel *m) {
     int id = mj_name2id(m, mjOBJ_MATERIAL, names[i]);
     for (int c = 0; c < 3 && id >= 0; c++) m->mat_rgba[4 * id + c] = 0.16f;
   }
+  int shadow = mj_name2id(m, mjOBJ_MATERIAL, "shadow");
+  if (shadow >= 0) m->mat_rgba[4 * shadow + 3] = 0.0f;
 }
 
 // The overhead camera shows each material in its own colour: even light from everywhere, no lamp, nothing costly.
@@ -109,8 +111,8 @@ static void set_quality(vs_render *r) {
   bool camera = r->def.view == VS_VIEW_CAMERA;
   m->vis.global.offwidth = r->def.width_px;
   m->vis.global.offheight = r->def.height_px;
-  m->vis.quality.offsamples = camera ? 0 : 4;
-  m->vis.quality.shadowsize = camera ? 0 : 1024;
+  m->vis.quality.offsamples = 0; // in software four samples cost as much again as the picture
+  m->vis.quality.shadowsize = 0;
   for (int c = 0; c < 3; c++) {
     m->vis.headlight.ambient[c] = camera ? 1.0f : 0.38f;
     m->vis.headlight.diffuse[c] = camera ? 0.0f : 0.22f;
@@ -127,8 +129,7 @@ static void make_scene(vs_render *r) {
   int half_steps = r->def.height_px / 180; // MuJoCo's fonts come in 50 %, 100 %, ... 300 %; 200 % suits 720 rows
   mjr_makeContext(r->model, &r->context, 50 * (half_steps < 1 ? 1 : half_steps > 6 ? 6 : half_steps));
   mjr_setBuffer(mjFB_OFFSCREEN, &r->context);
-  bool camera = r->def.view == VS_VIEW_CAMERA;
-  r->scene.flags[mjRND_SHADOW] = !camera;
+  r->scene.flags[mjRND_SHADOW] = 0;
   r->scene.flags[mjRND_REFLECTION] = 0;
   r->scene.flags[mjRND_SKYBOX] = 0;
   r->scene.flags[mjRND_FOG] = 0;
@@ -232,7 +233,7 @@ vs_status vs_render_world(vs_render *r, const vs_world *world, const vs_game *ga
   camera.lookat[1] = -0.03;
   camera.distance = 1.78;
   camera.azimuth = 90;
-  camera.elevation = -54;
+  camera.elevation = -60;
   mjv_updateScene(r->model, r->data, &option, NULL, &camera, mjCAT_ALL, &r->scene);
   if (r->def.view == VS_VIEW_CAMERA) aim_overhead(r);
 
