@@ -15,8 +15,7 @@ static char folder[] = "/tmp/vsss_rig_XXXXXX", log_path[64], venue[64];
 static int make_folder(void **state) {
   (void)state;
   vs_camera_register(vs_frame_stream_camera());
-  if (!mkdtemp(folder))
-    return 1;
+  if (!mkdtemp(folder)) return 1;
   snprintf(log_path, sizeof log_path, "%s/log", folder);
   snprintf(venue, sizeof venue, "%s/venue", folder);
   return 0;
@@ -32,25 +31,20 @@ static int remove_folder(void **state) {
 // A rig that waits for its viewer; 0 where this machine cannot draw.
 static pid_t start_rig(const char *flags) {
   char arguments[512];
-  snprintf(arguments, sizeof arguments, "rig --no-lcm --dir %s %s", venue,
-           flags);
+  snprintf(arguments, sizeof arguments, "rig --no-lcm --dir %s %s", venue, flags);
   pid_t rig = vsss_start(log_path, arguments);
-  if (wait_for_text(log_path, "waiting for the camera", 60))
-    return rig;
+  if (wait_for_text(log_path, "waiting for the camera", 60)) return rig;
   int status = vsss_wait(rig, 1);
   const char *said = read_text(log_path);
-  if (!strstr(said, "install "))
-    fail_msg("rig: status %d: %s", status, said);
+  if (!strstr(said, "install ")) fail_msg("rig: status %d: %s", status, said);
   print_message("note: 1 check not run: %s", said);
   return 0;
 }
 
-static void
-the_camera_shows_the_kick_off_where_the_calibration_says(void **state) {
+static void the_camera_shows_the_kick_off_where_the_calibration_says(void **state) {
   (void)state;
   pid_t rig = start_rig("--team yellow --opponent zero:");
-  if (!rig)
-    return;
+  if (!rig) return;
   char source[96], calib_path[96];
   snprintf(source, sizeof source, "rig:%s/camera", venue);
   snprintf(calib_path, sizeof calib_path, "%s/calib.ini", venue);
@@ -60,8 +54,7 @@ the_camera_shows_the_kick_off_where_the_calibration_says(void **state) {
   assert_ok(vs_calib_load(calib_path, &calib, err));
   vs_frame frame;
   vs_camera_got got = VS_CAMERA_TIMEOUT;
-  for (int i = 0; i < 40 && got != VS_CAMERA_FRAME; i++)
-    assert_ok(vs_camera_read(camera, 1000, &frame, &got, err));
+  for (int i = 0; i < 40 && got != VS_CAMERA_FRAME; i++) assert_ok(vs_camera_read(camera, 1000, &frame, &got, err));
   assert_int_equal(got, VS_CAMERA_FRAME);
   vs_detector_def def = vs_detector_def_default();
   def.adversary = VS_BLUE;
@@ -74,13 +67,11 @@ the_camera_shows_the_kick_off_where_the_calibration_says(void **state) {
   assert_int_equal(seen.adversaries, 3);
   assert_int_equal(seen.balls, 1);
   double x, y;
-  assert_true(vs_calib_to_field(&calib, seen.ball[0].x_px, seen.ball[0].y_px,
-                                0.02135, &x, &y));
+  assert_true(vs_calib_to_field(&calib, seen.ball[0].x_px, seen.ball[0].y_px, 0.02135, &x, &y));
   assert_near(x, 0, 0.002); // kick-off: the ball lies on the centre mark
   assert_near(y, 0, 0.002);
   for (int i = 0; i < 3; i++) { // yellow defends +x
-    assert_true(vs_calib_to_field(&calib, seen.tag[i].centre_px[0],
-                                  seen.tag[i].centre_px[1], 0.08, &x, &y));
+    assert_true(vs_calib_to_field(&calib, seen.tag[i].centre_px[0], seen.tag[i].centre_px[1], 0.08, &x, &y));
     assert_true(x > 0);
   }
   vs_detector_free(detector);
@@ -92,8 +83,7 @@ the_camera_shows_the_kick_off_where_the_calibration_says(void **state) {
 static void the_robots_obey_the_radio_and_report(void **state) {
   (void)state;
   pid_t rig = start_rig("--opponent zero:");
-  if (!rig)
-    return;
+  if (!rig) return;
   char source[96], device[96], path[128];
   snprintf(source, sizeof source, "rig:%s/camera", venue);
   snprintf(device, sizeof device, "%s/radio", venue);
@@ -102,30 +92,23 @@ static void the_robots_obey_the_radio_and_report(void **state) {
   assert_ok(vs_camera_open(source, NULL, &camera, err));
   assert_ok(vs_serial_open(device, VS_SERIAL_BAUD, &radio, err));
   vs_radio_frame frame = {.type = VS_RADIO_COMMAND};
-  frame.as.command = (vs_radio_command){
-      .n = 3, .robot = {{0, 500, 500}, {1, -500, 500}, {2, 0, 0}}};
+  frame.as.command = (vs_radio_command){.n = 3, .robot = {{0, 500, 500}, {1, -500, 500}, {2, 0, 0}}};
   vs_radio_decoder decoder = {0};
   int reports[3] = {0}, echoed = 0;
   double fastest = 0; // what robot 0 says of its left wheel
-  for (int i = 0;
-       i < 300 && (reports[0] < 5 || reports[2] < 5 || fastest < 4.5); i++) {
+  for (int i = 0; i < 300 && (reports[0] < 5 || reports[2] < 5 || fastest < 4.5); i++) {
     uint8_t bytes[256];
     frame.as.command.seq = (uint8_t)i;
-    vs_serial_write(radio, bytes, vs_radio_encode(&frame, bytes),
-                    vs_clock_monotonic_us());
-    size_t n =
-        vs_serial_read(radio, bytes, sizeof bytes, vs_clock_monotonic_us());
+    vs_serial_write(radio, bytes, vs_radio_encode(&frame, bytes), vs_clock_monotonic_us());
+    size_t n = vs_serial_read(radio, bytes, sizeof bytes, vs_clock_monotonic_us());
     for (size_t k = 0; k < n; k++) {
       vs_radio_frame report;
-      if (!vs_radio_decode(&decoder, bytes[k], &report) ||
-          report.type != VS_RADIO_TELEMETRY)
-        continue;
+      if (!vs_radio_decode(&decoder, bytes[k], &report) || report.type != VS_RADIO_TELEMETRY) continue;
       const vs_radio_telemetry *t = &report.as.telemetry;
       assert_in_range(t->id, 0, 2);
       reports[t->id]++;
       echoed += t->seq_echo > 0;
-      if (t->id == 0)
-        fastest = fmax(fastest, vs_radio_radps(t->left));
+      if (t->id == 0) fastest = fmax(fastest, vs_radio_radps(t->left));
     }
     vs_frame picture;
     vs_camera_got got;
@@ -148,8 +131,7 @@ static void the_robots_obey_the_radio_and_report(void **state) {
 static void a_second_rig_in_the_same_folder_is_refused(void **state) {
   (void)state;
   pid_t rig = start_rig("");
-  if (!rig)
-    return;
+  if (!rig) return;
   char arguments[128];
   snprintf(arguments, sizeof arguments, "rig --no-lcm --dir %s", venue);
   assert_refused(arguments, 1, "in use by another rig");
@@ -159,8 +141,7 @@ static void a_second_rig_in_the_same_folder_is_refused(void **state) {
 
 static void bad_input_is_named_in_one_line(void **state) {
   (void)state;
-  assert_refused("rig --team green", 2,
-                 "--team green: expected blue or yellow");
+  assert_refused("rig --team green", 2, "--team green: expected blue or yellow");
   assert_refused("rig --opponent clever:", 2, "clever");
   assert_refused("rig --rules house", 2, "house");
   assert_refused("rig --drive rocket", 2, "rocket");
@@ -177,19 +158,16 @@ static void a_folder_that_cannot_be_made_is_named(void **state) {
     return;
   }
   assert_int_equal(run.status, 1);
-  assert_non_null(strstr(
-      run.err, "/nonexistent/venue: cannot make this folder: No such file"));
+  assert_non_null(strstr(run.err, "/nonexistent/venue: cannot make this folder: No such file"));
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bad_input_is_named_in_one_line),
       cmocka_unit_test(a_folder_that_cannot_be_made_is_named),
-      cmocka_unit_test(
-          the_camera_shows_the_kick_off_where_the_calibration_says),
+      cmocka_unit_test(the_camera_shows_the_kick_off_where_the_calibration_says),
       cmocka_unit_test(the_robots_obey_the_radio_and_report),
       cmocka_unit_test(a_second_rig_in_the_same_folder_is_refused),
   };
-  return cmocka_run_group_tests_name("cli/rig", tests, make_folder,
-                                     remove_folder);
+  return cmocka_run_group_tests_name("cli/rig", tests, make_folder, remove_folder);
 }
