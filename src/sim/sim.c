@@ -77,8 +77,8 @@ void vs_sim_reset(vs_sim *sim, const vs_sim_params *params) {
   sim->push_rng = vs_rng_make(sim->params.push_seed, 0);
   sim->out_of_memory = !vs_randomize_apply(sim);
   vs_nearby_reset(sim);
+  sim->data->time = 0;
   sim->frame = 0;
-  memcpy(sim->data->qpos, sim->mj->qpos0, sizeof(double) * sim->mj->nq); // the wheels' angles, that placing leaves
   vs_sim_place(sim, &kick_off);
 }
 
