@@ -52,39 +52,42 @@ FEATURE_EXCLUDE += $(call choose,EGL,src/sim/gl_context.c)
 FEATURE_EXCLUDE += $(call choose,ONNXRUNTIME,src/policy/policy_onnx.c)
 FEATURE_CFLAGS += $(if $(HAVE_ONNXRUNTIME),-isystem $(firstword $(wildcard /usr/include/onnxruntime build/onnxruntime/include)))
 
-# Modules: one rule each, from the shims of one library. Never built with a sanitizer.
-MODULE_FLAGS := -O2 -g -fPIC -shared -pthread -Iinclude -Isrc
-MODULE_WARN := $(WARN)
-
-OPENCV_SHIMS := $(wildcard src/vision/*_opencv.cpp)
-ifneq ($(and $(HAVE_OPENCV),$(OPENCV_SHIMS)),)
-MODULES += build/lib/vsss_opencv.so
-build/lib/vsss_opencv.so: $(OPENCV_SHIMS) $(wildcard src/vision/*.h include/vsss/*.h) build/features.mk
+# Modules: build/lib/vsss_NAME.so from the shims of one library, src/*/*_NAME.cpp (or .c). Never built with a sanitizer.
+SHIM_CFLAGS := $(WARN) -O2 -g -fPIC -pthread -Iinclude -Isrc -MMD -MP
+SHIM_OBJ :=
+# $(call module,NAME,SOURCES,INCLUDE FLAGS,LIBRARIES)
+define module
+MODULES += build/lib/vsss_$(1).so
+SHIM_OBJ += $(2:%=build/shim/%.o)
+$(2:%=build/shim/%.o): SHIM_INCLUDE := $(3)
+build/lib/vsss_$(1).so: $(2:%=build/shim/%.o)
+	@mkdir -p $$(@D)
+	@echo '  LD    $$@'
+	$$(Q)$$(CXX) -shared -pthread -o $$@ $$^ $(4)
+endef
+build/shim/%.cpp.o: %.cpp build/features.mk
 	@mkdir -p $(@D)
-	@echo '  CXX   $@'
-	$(Q)$(CXX) -std=gnu++17 $(MODULE_WARN) $(MODULE_FLAGS) -isystem /usr/include/opencv4 -o $@ $(OPENCV_SHIMS) \
-	  -lopencv_calib3d -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
-endif
-
-TORCH_SHIMS := $(wildcard src/learn/*_torch.cpp)
-ifneq ($(and $(HAVE_TORCH),$(TORCH_SHIMS)),)
-MODULES += build/lib/vsss_torch.so
-build/lib/vsss_torch.so: $(TORCH_SHIMS) $(wildcard src/learn/*.h include/vsss/*.h) build/features.mk
+	@echo '  CXX   $<'
+	$(Q)$(CXX) -std=gnu++17 $(SHIM_CFLAGS) $(SHIM_INCLUDE) -c -o $@ $<
+build/shim/%.c.o: %.c build/features.mk
 	@mkdir -p $(@D)
-	@echo '  CXX   $@'
-	$(Q)$(CXX) -std=gnu++17 $(MODULE_WARN) $(MODULE_FLAGS) -isystem /usr/include/torch/csrc/api/include -o $@ $(TORCH_SHIMS) \
-	  -ltorch -ltorch_cpu -lc10
-endif
+	@echo '  CC    $<'
+	$(Q)$(CC) -std=gnu11 $(SHIM_CFLAGS) $(SHIM_INCLUDE) -c -o $@ $<
 
-MPI_SHIMS := $(wildcard src/learn/*_mpi.c)
-ifneq ($(and $(HAVE_MPI),$(MPI_SHIMS)),)
-MODULES += build/lib/vsss_mpi.so
-build/lib/vsss_mpi.so: $(MPI_SHIMS) $(wildcard src/learn/*.h include/vsss/*.h) build/features.mk
-	@mkdir -p $(@D)
-	@echo '  CC    $@'
-	$(Q)$(CC) -std=gnu11 $(MODULE_WARN) $(MODULE_FLAGS) -isystem $(firstword $(wildcard /usr/lib/*/openmpi/include)) -o $@ $(MPI_SHIMS) -lmpi
-endif
+OPENCV_SHIMS := $(wildcard src/*/*_opencv.cpp)
+TORCH_SHIMS := $(wildcard src/*/*_torch.cpp)
+MPI_SHIMS := $(wildcard src/*/*_mpi.c)
 FEATURE_EXCLUDE += $(MPI_SHIMS)
+ifneq ($(HAVE_OPENCV),)
+$(eval $(call module,opencv,$(OPENCV_SHIMS),-isystem /usr/include/opencv4,-lopencv_calib3d -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core))
+endif
+ifneq ($(HAVE_TORCH),)
+$(eval $(call module,torch,$(TORCH_SHIMS),-isystem /usr/include/torch/csrc/api/include,-ltorch -ltorch_cpu -lc10))
+endif
+ifneq ($(HAVE_MPI),)
+$(eval $(call module,mpi,$(MPI_SHIMS),-isystem $(firstword $(wildcard /usr/lib/*/openmpi/include)),-lmpi))
+endif
+-include $(SHIM_OBJ:.o=.d)
 
 features:
 	@cat build/features.txt
