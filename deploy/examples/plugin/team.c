@@ -66,6 +66,11 @@ static vs_wheels strike(const vs_robot *r, const vs_ball *ball, double speed_mps
   return drive_to(r, ball->x_m + along_m * gx - aside_m * gy, ball->y_m + along_m * gy + aside_m * gx, speed_mps);
 }
 
+// The ball in our goal area: two robots of ours in there would be a penalty, so only the keeper goes for it.
+static bool ball_in_our_area(const vs_ball *ball) {
+  return ball->x_m < -VS_FIELD_HALF_LENGTH_M + VS_AREA_DEPTH_M + 0.05 && fabs(ball->y_m) < VS_AREA_HALF_WIDTH_M + 0.05;
+}
+
 static double ball_distance(const vs_world *w, int robot) {
   const vs_pose *p = &w->robot[VS_OWN][robot].pose;
   return hypot(w->ball.x_m - p->x_m, w->ball.y_m - p->y_m);
@@ -79,9 +84,15 @@ static void step(void *state, const vs_world *world, const vs_game *game, double
     t->striker = reserve;
     reserve = 3 - reserve;
   }
-  out[0] = keep(&world->robot[VS_OWN][0], &world->ball, t->speed_mps);
-  out[t->striker] = strike(&world->robot[VS_OWN][t->striker], &world->ball, t->speed_mps);
-  out[reserve] = drive_to(&world->robot[VS_OWN][reserve], -0.3, world->ball.y_m > 0.0 ? -0.2 : 0.2, t->speed_mps);
+  const vs_robot *own = world->robot[VS_OWN];
+  if (ball_in_our_area(&world->ball)) {
+    out[0] = strike(&own[0], &world->ball, t->speed_mps);
+    out[t->striker] = drive_to(&own[t->striker], -0.4, world->ball.y_m, t->speed_mps);
+  } else {
+    out[0] = keep(&own[0], &world->ball, t->speed_mps);
+    out[t->striker] = strike(&own[t->striker], &world->ball, t->speed_mps);
+  }
+  out[reserve] = drive_to(&own[reserve], -0.3, world->ball.y_m > 0.0 ? -0.2 : 0.2, t->speed_mps);
 }
 
 static const vsss_player_api api = {
