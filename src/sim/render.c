@@ -9,6 +9,8 @@
 #include "gl_context.h"
 #include "render_overlay.h"
 #include "render_paint.h"
+#include "render_shadow.h"
+#include "render_tile.h"
 #include "vsss/field.h"
 #include "vsss/paths.h"
 
@@ -28,7 +30,10 @@ struct vs_render {
   mjrContext context;
   bool has_context; // scene and context hold something to free
   int mocap[BALL_SLOT + 1];
-  uint8_t *bottom_up; // as OpenGL gives the picture
+  float lamp[3]; // where its light goes
+  vs_tile_picture picture;
+  uint8_t *still; // the picture without pieces, top row first: drawn once, as most of every picture is this
+  uint8_t *part;  // as OpenGL gives it, bottom row first
 };
 
 vs_render_def vs_render_def_default(vs_view view) {
@@ -101,8 +106,6 @@ static void darken(mjModel *m) {
     int id = mj_name2id(m, mjOBJ_MATERIAL, names[i]);
     for (int c = 0; c < 3 && id >= 0; c++) m->mat_rgba[4 * id + c] = 0.16f;
   }
-  int shadow = mj_name2id(m, mjOBJ_MATERIAL, "shadow");
-  if (shadow >= 0) m->mat_rgba[4 * shadow + 3] = 0.0f;
 }
 
 // The overhead camera shows each material in its own colour: even light from everywhere, no lamp, nothing costly.
@@ -111,14 +114,15 @@ static void set_quality(vs_render *r) {
   bool camera = r->def.view == VS_VIEW_CAMERA;
   m->vis.global.offwidth = r->def.width_px;
   m->vis.global.offheight = r->def.height_px;
-  m->vis.quality.offsamples = 0; // in software four samples cost as much again as the picture
-  m->vis.quality.shadowsize = 0;
+  m->vis.quality.offsamples = camera ? 0 : 4; // affordable for parts of a picture
+  m->vis.quality.shadowsize = 0;              // render_shadow.h
   for (int c = 0; c < 3; c++) {
     m->vis.headlight.ambient[c] = camera ? 1.0f : 0.38f;
     m->vis.headlight.diffuse[c] = camera ? 0.0f : 0.22f;
     m->vis.headlight.specular[c] = 0.0f;
   }
   for (int i = 0; i < m->nlight; i++) m->light_active[i] = !camera;
+  for (int c = 0; c < 3; c++) r->lamp[c] = (float)m->light_dir[c];
   if (camera) darken(m);
 }
 
@@ -135,46 +139,6 @@ static void make_scene(vs_render *r) {
   r->scene.flags[mjRND_FOG] = 0;
   r->scene.flags[mjRND_HAZE] = 0;
   r->has_context = true;
-}
-
-vs_status vs_render_new(const vs_render_def *def, vs_render **out, vs_error *err) {
-  *out = NULL;
-  vs_status s = check(def, err);
-  if (s != VS_OK) return s;
-  vs_render *r = calloc(1, sizeof *r);
-  if (!r) return vs_fail(err, VS_FAIL, "out of memory");
-  r->def = *def;
-  snprintf(r->title, sizeof r->title, "%s", def->title ? def->title : "");
-  r->bottom_up = malloc((size_t)def->width_px * def->height_px * 3);
-  if (!r->bottom_up) s = vs_fail(err, VS_FAIL, "out of memory");
-  if (s == VS_OK) s = load_model(r, err);
-  if (s == VS_OK) s = vs_gl_context_new(&r->gl, err);
-  if (s == VS_OK && !vs_gl_context_bind(r->gl)) s = vs_fail(err, VS_FAIL, "EGL refuses its own OpenGL context");
-  if (s != VS_OK) {
-    vs_render_free(r);
-    return s;
-  }
-  r->data = mj_makeData(r->model);
-  set_quality(r);
-  make_scene(r);
-  vs_gl_context_release(r->gl);
-  memset(r->def.cap, 0, sizeof r->def.cap); // the caller's
-  *out = r;
-  return VS_OK;
-}
-
-void vs_render_free(vs_render *r) {
-  if (!r) return;
-  if (r->has_context) {
-    vs_gl_context_bind(r->gl);
-    mjr_freeContext(&r->context);
-    mjv_freeScene(&r->scene);
-  }
-  vs_gl_context_free(r->gl);
-  if (r->data) mj_deleteData(r->data);
-  if (r->model) mj_deleteModel(r->model);
-  free(r->bottom_up);
-  free(r);
 }
 
 vs_pinhole vs_render_pinhole(const vs_render *r) {
@@ -208,23 +172,36 @@ static void put_world(vs_render *r, const vs_world *w) {
   mj_camlight(r->model, r->data);
 }
 
-static void aim_overhead(vs_render *r) {
+static mjvGLCamera overhead(const vs_render *r) {
   vs_pinhole p = vs_render_pinhole(r);
   float half = (float)(CAMERA_NEAR_M * 0.5 * p.height_px / p.focal_px);
-  for (int i = 0; i < 2; i++) {
-    mjvGLCamera *c = &r->scene.camera[i];
-    *c = (mjvGLCamera){.pos = {0, 0, (float)p.height_m},
+  return (mjvGLCamera){.pos = {0, 0, (float)p.height_m},
                        .forward = {0, 0, -1},
                        .up = {0, 1, 0},
                        .frustum_bottom = -half,
                        .frustum_top = half,
                        .frustum_near = (float)CAMERA_NEAR_M,
                        .frustum_far = 10.0f};
-  }
 }
 
-vs_status vs_render_world(vs_render *r, const vs_world *world, const vs_game *game, uint8_t *rgb, vs_error *err) {
-  if (!vs_gl_context_bind(r->gl)) return vs_fail(err, VS_FAIL, "the renderer's context is in use by another thread");
+static void add_shadows(vs_render *r, const vs_world *w) {
+  vs_shadow_add_walls(&r->scene, r->lamp);
+  const mjtNum cube[3] = {0.5 * VS_ROBOT_SIZE_M, 0.5 * VS_ROBOT_SIZE_M, 0.5 * VS_ROBOT_SIZE_M};
+  for (int i = 0; i < BALL_SLOT; i++) {
+    const vs_robot *robot = &w->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+    if (!robot->valid) continue;
+    mjtNum centre[3] = {robot->pose.x_m, robot->pose.y_m, 0.5 * VS_ROBOT_SIZE_M};
+    mjtNum c = cos(robot->pose.theta_rad), s = sin(robot->pose.theta_rad), turn[9] = {c, -s, 0, s, c, 0, 0, 0, 1};
+    vs_shadow_add(&r->scene, mjGEOM_BOX, cube, centre, turn, r->lamp);
+  }
+  if (!w->ball.valid) return;
+  const mjtNum ball[3] = {VS_BALL_RADIUS_M, VS_BALL_RADIUS_M, VS_BALL_RADIUS_M},
+               upright[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  mjtNum centre[3] = {w->ball.x_m, w->ball.y_m, w->ball.z_m};
+  vs_shadow_add(&r->scene, mjGEOM_SPHERE, ball, centre, upright, r->lamp);
+}
+
+static void set_scene(vs_render *r, const vs_world *world) {
   put_world(r, world);
   mjvOption option;
   mjvCamera camera;
@@ -235,15 +212,106 @@ vs_status vs_render_world(vs_render *r, const vs_world *world, const vs_game *ga
   camera.azimuth = 90;
   camera.elevation = -60;
   mjv_updateScene(r->model, r->data, &option, NULL, &camera, mjCAT_ALL, &r->scene);
-  if (r->def.view == VS_VIEW_CAMERA) aim_overhead(r);
+  bool broadcast = r->def.view == VS_VIEW_BROADCAST;
+  if (broadcast) add_shadows(r, world);
+  mjvGLCamera eye = broadcast ? mjv_averageCamera(&r->scene.camera[0], &r->scene.camera[1]) : overhead(r);
+  r->picture = (vs_tile_picture){eye, r->def.width_px, r->def.height_px};
+}
 
-  int width = r->def.width_px, height = r->def.height_px;
-  mjrRect all = {0, 0, width, height};
-  mjr_render(all, &r->scene, &r->context);
-  if (game && r->def.view == VS_VIEW_BROADCAST) vs_render_overlay(&r->context, all, game, r->title);
-  mjr_readPixels(r->bottom_up, NULL, all, &r->context);
+// Reads what the context holds of part of the picture from (left, bottom) on, into its place in rgb.
+static void read_part(vs_render *r, int left, int bottom, mjrRect part, uint8_t *rgb) {
+  mjr_readPixels(r->part, NULL, (mjrRect){left, bottom, part.width, part.height}, &r->context);
+  size_t row_bytes = (size_t)part.width * 3;
+  for (int row = 0; row < part.height; row++) {
+    size_t from_top = (size_t)(r->def.height_px - 1 - part.bottom - row);
+    memcpy(rgb + (from_top * (size_t)r->def.width_px + (size_t)part.left) * 3, r->part + (size_t)row * row_bytes,
+           row_bytes);
+  }
+}
+
+static void draw_part(vs_render *r, mjrRect part, uint8_t *rgb) {
+  if (!part.width) return;
+  r->scene.camera[0] = r->scene.camera[1] = vs_tile_camera(&r->picture, part);
+  mjr_render((mjrRect){0, 0, part.width, part.height}, &r->scene, &r->context);
+  read_part(r, 0, 0, part, rgb);
+}
+
+static void draw_still(vs_render *r) {
+  static const vs_world empty;
+  set_scene(r, &empty);
+  draw_part(r, (mjrRect){0, 0, r->def.width_px, r->def.height_px}, r->still);
+}
+
+static void draw_piece(vs_render *r, bool valid, double x_m, double y_m, double low_m, double high_m, double radius_m,
+                       uint8_t *rgb) {
+  if (!valid) return;
+  const float low[3] = {(float)(x_m - radius_m), (float)(y_m - radius_m), (float)low_m};
+  const float high[3] = {(float)(x_m + radius_m), (float)(y_m + radius_m), (float)high_m};
+  draw_part(r, vs_tile_around(&r->picture, low, high, r->def.view == VS_VIEW_BROADCAST ? r->lamp : NULL), rgb);
+}
+
+vs_status vs_render_new(const vs_render_def *def, vs_render **out, vs_error *err) {
+  *out = NULL;
+  vs_status s = check(def, err);
+  if (s != VS_OK) return s;
+  vs_render *r = calloc(1, sizeof *r);
+  if (!r) return vs_fail(err, VS_FAIL, "out of memory");
+  r->def = *def;
+  snprintf(r->title, sizeof r->title, "%s", def->title ? def->title : "");
+  size_t bytes = (size_t)def->width_px * def->height_px * 3;
+  r->still = malloc(bytes);
+  r->part = malloc(bytes);
+  if (!r->still || !r->part) s = vs_fail(err, VS_FAIL, "out of memory");
+  if (s == VS_OK) s = load_model(r, err);
+  if (s == VS_OK) s = vs_gl_context_new(&r->gl, err);
+  if (s == VS_OK && !vs_gl_context_bind(r->gl)) s = vs_fail(err, VS_FAIL, "EGL refuses its own OpenGL context");
+  if (s != VS_OK) {
+    vs_render_free(r);
+    return s;
+  }
+  r->data = mj_makeData(r->model);
+  set_quality(r);
+  make_scene(r);
+  draw_still(r);
   vs_gl_context_release(r->gl);
-  for (int row = 0; row < height; row++)
-    memcpy(rgb + (size_t)row * width * 3, r->bottom_up + (size_t)(height - 1 - row) * width * 3, (size_t)width * 3);
+  memset(r->def.cap, 0, sizeof r->def.cap); // the caller's
+  *out = r;
+  return VS_OK;
+}
+
+void vs_render_free(vs_render *r) {
+  if (!r) return;
+  if (r->has_context) {
+    vs_gl_context_bind(r->gl);
+    mjr_freeContext(&r->context);
+    mjv_freeScene(&r->scene);
+  }
+  vs_gl_context_free(r->gl);
+  if (r->data) mj_deleteData(r->data);
+  if (r->model) mj_deleteModel(r->model);
+  free(r->still);
+  free(r->part);
+  free(r);
+}
+
+vs_status vs_render_world(vs_render *r, const vs_world *world, const vs_game *game, uint8_t *rgb, vs_error *err) {
+  if (!vs_gl_context_bind(r->gl)) return vs_fail(err, VS_FAIL, "the renderer's context is in use by another thread");
+  set_scene(r, world);
+  memcpy(rgb, r->still, (size_t)r->def.width_px * r->def.height_px * 3);
+  for (int i = 0; i < BALL_SLOT; i++) {
+    const vs_robot *robot = &world->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+    draw_piece(r, robot->valid, robot->pose.x_m, robot->pose.y_m, 0.0, VS_ROBOT_SIZE_M, VS_ROBOT_SIZE_M * M_SQRT1_2,
+               rgb);
+  }
+  const vs_ball *ball = &world->ball;
+  draw_piece(r, ball->valid, ball->x_m, ball->y_m, ball->z_m - VS_BALL_RADIUS_M, ball->z_m + VS_BALL_RADIUS_M,
+             VS_BALL_RADIUS_M, rgb);
+  if (game && r->def.view == VS_VIEW_BROADCAST) {
+    mjrRect drawn[VS_OVERLAY_LABELS];
+    int labels =
+        vs_render_overlay(&r->context, (mjrRect){0, 0, r->def.width_px, r->def.height_px}, game, r->title, drawn);
+    for (int i = 0; i < labels; i++) read_part(r, drawn[i].left, drawn[i].bottom, drawn[i], rgb);
+  }
+  vs_gl_context_release(r->gl);
   return VS_OK;
 }

@@ -10,9 +10,15 @@
 static const float ink[3] = {0.96f, 0.96f, 0.96f}, board[3] = {0.07f, 0.08f, 0.10f};
 static const float team_rgb[VS_TEAMS][3] = {{0.10f, 0.28f, 0.90f}, {0.98f, 0.84f, 0.08f}};
 
-static void label(const mjrContext *context, mjrRect at, int font, const char *text, const float back[3],
-                  const float front[3]) {
-  mjr_label(at, font, text, back[0], back[1], back[2], 1.0f, front[0], front[1], front[2], context);
+typedef struct labels {
+  const mjrContext *context;
+  mjrRect *drawn;
+  int count;
+} labels;
+
+static void label(labels *l, mjrRect at, const char *text, const float back[3], const float front[3]) {
+  mjr_label(at, mjFONT_NORMAL, text, back[0], back[1], back[2], 1.0f, front[0], front[1], front[2], l->context);
+  l->drawn[l->count++] = at;
 }
 
 // "GOAL - BLUE", "FREE BALL - QUADRANT 2", "" when nothing happened lately.
@@ -32,31 +38,33 @@ static void caption(const vs_game *game, char *text, size_t size) {
   for (char *c = text; *c; c++) *c = (char)toupper((unsigned char)*c);
 }
 
-void vs_render_overlay(const mjrContext *context, mjrRect picture, const vs_game *game, const char *title) {
+int vs_render_overlay(const mjrContext *context, mjrRect picture, const vs_game *game, const char *title,
+                      mjrRect drawn[VS_OVERLAY_LABELS]) {
+  labels l = {context, drawn, 0};
   int unit = picture.height / 18, middle = picture.width / 2, top = picture.height - unit - unit / 3;
   char text[96];
   int width = unit * 3 / 2, gap = 3 * unit;
   snprintf(text, sizeof text, "%d", game->score[VS_BLUE]);
-  label(context, (mjrRect){middle - gap / 2 - width, top, width, unit}, mjFONT_NORMAL, text, team_rgb[VS_BLUE], ink);
+  label(&l, (mjrRect){middle - gap / 2 - width, top, width, unit}, text, team_rgb[VS_BLUE], ink);
   snprintf(text, sizeof text, "%d", game->score[VS_YELLOW]);
-  label(context, (mjrRect){middle + gap / 2, top, width, unit}, mjFONT_NORMAL, text, team_rgb[VS_YELLOW], board);
+  label(&l, (mjrRect){middle + gap / 2, top, width, unit}, text, team_rgb[VS_YELLOW], board);
   // As sports show it: the time played.
   int played = (int)floor(game->time_s);
   snprintf(text, sizeof text, "%d:%02d", played / 60, played % 60);
-  label(context, (mjrRect){middle - gap / 2, top, gap, unit}, mjFONT_NORMAL, text, board, ink);
+  label(&l, (mjrRect){middle - gap / 2, top, gap, unit}, text, board, ink);
 
   const char *versus = strstr(title, "  ");
   if (versus) {
     snprintf(text, sizeof text, "%.*s", (int)(versus - title), title);
-    label(context, (mjrRect){middle - gap / 2 - width - 5 * unit, top, 5 * unit, unit}, mjFONT_NORMAL, text, board,
-          ink);
-    label(context, (mjrRect){middle + gap / 2 + width, top, 5 * unit, unit}, mjFONT_NORMAL, versus + 2, board, ink);
+    label(&l, (mjrRect){middle - gap / 2 - width - 5 * unit, top, 5 * unit, unit}, text, board, ink);
+    label(&l, (mjrRect){middle + gap / 2 + width, top, 5 * unit, unit}, versus + 2, board, ink);
   }
   caption(game, text, sizeof text);
   if (*text) {
     vs_team team = game->last_event.team;
     bool coloured = game->last_event.kind == VS_EVENT_GOAL || game->last_event.kind == VS_EVENT_PENALTY;
-    label(context, (mjrRect){middle - 6 * unit, top - unit - unit / 4, 12 * unit, unit}, mjFONT_NORMAL, text,
+    label(&l, (mjrRect){middle - 6 * unit, top - unit - unit / 4, 12 * unit, unit}, text,
           coloured ? team_rgb[team] : board, coloured && team == VS_YELLOW ? board : ink);
   }
+  return l.count;
 }

@@ -6,6 +6,10 @@
 
 #include "vsss/world.h"
 
-void vs_render_overlay(const mjrContext *context, mjrRect picture, const vs_game *game, const char *title);
+#define VS_OVERLAY_LABELS 6
+
+// Draws into the context's picture and says where: opaque labels, their number returned.
+int vs_render_overlay(const mjrContext *context, mjrRect picture, const vs_game *game, const char *title,
+                      mjrRect drawn[VS_OVERLAY_LABELS]);
 
 #endif

@@ -1,4 +1,4 @@
-// src/sim/render.c (and render_paint.c, render_overlay.c, gl_context.c)
+// src/sim/render.c (and render_paint.c, render_shadow.c, render_overlay.c, gl_context.c)
 #include <stdlib.h>
 #include <string.h>
 
@@ -157,6 +157,42 @@ static void the_broadcast_shows_score_clock_and_caption(void **state) {
   free(later);
 }
 
+static int grey_at(const uint8_t *rgb, double x_px, double y_px) {
+  const uint8_t *p = rgb + 3 * ((int)y_px * 640 + (int)x_px);
+  return p[0] + p[1] + p[2];
+}
+
+static void a_robots_shadow_darkens_the_floor_away_from_the_lamp_and_moves_with_it(void **state) {
+  (void)state;
+  vs_render_def def = vs_render_def_default(VS_VIEW_BROADCAST);
+  def.width_px = 640;
+  def.height_px = 360;
+  vs_render *r = renderer(&def);
+  const int pixels = 640 * 360;
+  uint8_t *empty = malloc(pixels * 3), *rgb = malloc(pixels * 3), *later = malloc(pixels * 3);
+  vs_world w;
+  memset(&w, 0, sizeof w);
+  assert_ok(vs_render_world(r, &w, NULL, empty, err));
+  w.robot[VS_YELLOW][0] = (vs_robot){.pose = {0.4, 0.0, 0.0}, .valid = true};
+  assert_ok(vs_render_world(r, &w, NULL, rgb, err));
+  // The lamp stands over +x, -y: on the floor at (0.353, 0.02) the cube's shadow reaches 0.08 * 0.16 = 0.013 m past its
+  // side at 0.36. The camera is 1.78 m from (0, -0.03, 0), 60 degrees up: at (0, -0.92, 1.5415); MuJoCo's view of 45
+  // degrees is 360 / 2 / tan(22.5) = 434.6 px. There the depth is 0.5 * 0.94 + 0.8660 * 1.5415 = 1.805 m:
+  // x = 320 + 0.353 * 434.6 / 1.805 = 405.0, y = 180 - (0.8660 * 0.94 - 0.5 * 1.5415) * 434.6 / 1.805 = 169.6.
+  assert_true(grey_at(rgb, 405.0, 169.6) < 0.8 * grey_at(empty, 405.0, 169.6));
+  assert_true(grey_at(rgb, 405.0, 169.6) > 0.3 * grey_at(empty, 405.0, 169.6));
+  w.robot[VS_YELLOW][0].pose.x_m = -0.4;
+  assert_ok(vs_render_world(r, &w, NULL, later, err));
+  assert_true(differing(empty, later, pixels) > 500);
+  w.robot[VS_YELLOW][0].valid = false;
+  assert_ok(vs_render_world(r, &w, NULL, later, err));
+  assert_int_equal(differing(empty, later, pixels), 0); // nothing stays behind
+  vs_render_free(r);
+  free(empty);
+  free(rgb);
+  free(later);
+}
+
 static void two_renderers_in_one_thread_do_not_disturb_each_other(void **state) {
   (void)state;
   vs_render_def camera = vs_render_def_default(VS_VIEW_CAMERA), broadcast = vs_render_def_default(VS_VIEW_BROADCAST);
@@ -196,6 +232,7 @@ int main(void) {
       cmocka_unit_test(a_cap_picture_shows_its_top_row_to_the_robots_front),
       cmocka_unit_test(adversaries_carry_their_colour_and_what_is_not_valid_is_left_out),
       cmocka_unit_test(the_broadcast_shows_score_clock_and_caption),
+      cmocka_unit_test(a_robots_shadow_darkens_the_floor_away_from_the_lamp_and_moves_with_it),
       cmocka_unit_test(two_renderers_in_one_thread_do_not_disturb_each_other),
       cmocka_unit_test(sizes_out_of_range_are_refused),
   };
