@@ -70,6 +70,9 @@ static vs_status begin_files(vs_journal *j, double update, vs_error *err) {
   if (empty)
     fprintf(j->eval, "update,transitions,wall_s,opponent,matches,win,draw,loss,goals_for,goals_against,score,score_low,"
                      "score_high\n");
+  s = flush(j, j->progress, err);
+  if (s == VS_OK) s = flush(j, j->eval, err);
+  if (s != VS_OK) return s;
   // A new file for every start, as TensorBoard wants it.
   char path[PATH_MAX];
   snprintf(path, sizeof path, "%s/events.out.tfevents.%lld.vsss", j->folder, (long long)now_s());

@@ -136,6 +136,16 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
   memcpy(keys, rows, sizeof rows);
 }
 
+// With as few digits as read back as the same number.
+static int print_real(char *line, size_t size, const char *name, double value) {
+  int n = 0;
+  for (int digits = 6; digits <= 17; digits++) {
+    n = snprintf(line, size, "%s = %.*g\n", name, digits, value);
+    if (strtod(strchr(line, '=') + 1, NULL) == value) break;
+  }
+  return n;
+}
+
 size_t vs_train_def_text(const vs_train_def *def, char *out, size_t size) {
   vs_train_def copy = *def;
   vs_config_key keys[VS_TRAIN_KEYS_MAX];
@@ -146,7 +156,7 @@ size_t vs_train_def_text(const vs_train_def *def, char *out, size_t size) {
     int n = 0;
     switch (k->type) {
     case VS_CONFIG_INT: n = snprintf(line, sizeof line, "%s = %d\n", k->name, *(int *)k->target); break;
-    case VS_CONFIG_REAL: n = snprintf(line, sizeof line, "%s = %.17g\n", k->name, *(double *)k->target); break;
+    case VS_CONFIG_REAL: n = print_real(line, sizeof line, k->name, *(double *)k->target); break;
     case VS_CONFIG_BOOL:
       n = snprintf(line, sizeof line, "%s = %s\n", k->name, *(bool *)k->target ? "true" : "false");
       break;

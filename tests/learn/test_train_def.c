@@ -1,0 +1,98 @@
+// Tests src/learn/train_def.c and src/learn/reward_mix.c
+#include <stdio.h>
+#include <string.h>
+
+#include "assert_near.h"
+#include "learn/reward_mix.h"
+#include "vsss/learn.h"
+
+// Paper, Table 2 and section VII: lambda 0.95, gamma 0.99, clip 0.2, learning rate 4e-4, 200 environments, 5 epochs,
+// batch 128,400 = 200 x 3 x 214, opponent replaced at 0.6.
+static void the_paper_preset_is_table_2(void **state) {
+  (void)state;
+  vs_train_def def;
+  assert_ok(vs_train_def_preset("paper", &def, err));
+  assert_near(def.lambda, 0.95, 0.0);
+  assert_near(def.gamma, 0.99, 0.0);
+  assert_near(def.clip, 0.2, 0.0);
+  assert_near(def.learning_rate, 4e-4, 0.0);
+  assert_near(def.learning_rate_end, 4e-4, 0.0);
+  assert_near(def.replace_score, 0.6, 0.0);
+  assert_int_equal(def.envs * 3 * def.steps, 128400);
+  assert_int_equal(def.epochs, 5);
+  assert_int_equal(def.minibatch, 4280);
+  assert_string_equal(def.opponent, "frozen");
+  assert_string_equal(def.reward, "paper");
+  assert_string_equal(def.hidden, "256,256");
+  assert_near(def.episode_s, 40.0, 0.0);
+  assert_near(def.transitions_m, 160.0, 0.0);
+}
+
+static void settings_read_back_as_they_were_written(void **state) {
+  (void)state;
+  vs_train_def def, read;
+  vs_config_key keys[VS_TRAIN_KEYS_MAX];
+  char text[4096];
+  assert_ok(vs_train_def_preset("paper", &def, err));
+  def.gamma = 1.0 - 1.0 / 3.0;
+  def.seed = 42;
+  def.value_scale = true;
+  snprintf(def.reward, sizeof def.reward, "dense,approach=0.3");
+  snprintf(def.opponent, sizeof def.opponent, "self=0.5,emc:?pid=1=0.5");
+  assert_true(vs_train_def_text(&def, text, sizeof text) < sizeof text);
+  assert_non_null(strstr(text, "clip = 0.2\n")); // as a person would write it
+  assert_ok(vs_train_def_preset("default", &read, err));
+  vs_train_schema(&read, keys);
+  assert_ok(vs_config_parse("text", text, keys, err));
+  assert_memory_equal(&read, &def, offsetof(vs_train_def, opponent));
+  assert_near(read.gamma, def.gamma, 0.0);
+  assert_string_equal(read.reward, def.reward);
+  assert_string_equal(read.opponent, def.opponent);
+  assert_true(read.value_scale);
+}
+
+static void every_preset_passes_its_own_check(void **state) {
+  (void)state;
+  static const char *const names[] = {"default", "paper"};
+  for (int i = 0; i < 2; i++) {
+    vs_train_def def;
+    assert_ok(vs_train_def_preset(names[i], &def, err));
+    assert_ok(vs_train_def_check(&def, err));
+  }
+}
+
+static void a_reward_is_a_preset_and_changes(void **state) {
+  (void)state;
+  vs_reward_weights weights, paper = vs_reward_paper();
+  assert_ok(vs_reward_mix_parse("paper", &weights, err));
+  for (int t = 0; t < VS_REWARD_TERMS; t++) assert_near(weights.weight[t], paper.weight[t], 0.0);
+  assert_ok(vs_reward_mix_parse("paper,goal=2.5,approach=-0.25", &weights, err));
+  assert_near(weights.weight[VS_REWARD_GOAL], 2.5, 0.0);
+  assert_near(weights.weight[VS_REWARD_APPROACH], -0.25, 0.0);
+  assert_near(weights.weight[VS_REWARD_SPEED], paper.weight[VS_REWARD_SPEED], 0.0);
+  vs_error err = {0};
+  assert_int_equal(vs_reward_mix_parse("paper,goal=much", &weights, &err), VS_USAGE);
+  assert_int_equal(vs_reward_mix_parse("goal=1", &weights, &err), VS_USAGE);
+}
+
+// From 4 to 0 between 10 and 30: 4 before, 2 at 20, 0 after.
+static void the_schedule_is_linear_between_its_ends(void **state) {
+  (void)state;
+  const vs_reward_weights start = {{[VS_REWARD_GOAL] = 4.0}}, end = {{0}};
+  assert_near(vs_reward_mix_at(&start, &end, 10, 30, 5).weight[VS_REWARD_GOAL], 4.0, 0.0);
+  assert_near(vs_reward_mix_at(&start, &end, 10, 30, 20).weight[VS_REWARD_GOAL], 2.0, 1e-12);
+  assert_near(vs_reward_mix_at(&start, &end, 10, 30, 99).weight[VS_REWARD_GOAL], 0.0, 0.0);
+  assert_near(vs_reward_mix_at(&start, &end, 10, 10, 9).weight[VS_REWARD_GOAL], 4.0, 0.0);
+  assert_near(vs_reward_mix_at(&start, &end, 10, 10, 10).weight[VS_REWARD_GOAL], 0.0, 0.0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_paper_preset_is_table_2),
+      cmocka_unit_test(settings_read_back_as_they_were_written),
+      cmocka_unit_test(every_preset_passes_its_own_check),
+      cmocka_unit_test(a_reward_is_a_preset_and_changes),
+      cmocka_unit_test(the_schedule_is_linear_between_its_ends),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
