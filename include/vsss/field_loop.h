@@ -36,6 +36,7 @@ typedef struct vs_field_def {
   vs_detector_def detector;
   vs_track_def tracker;
   bool lcm;            // publish, and listen to a referee
+  double image_hz;     // pictures a second on VSSS_IMAGE, 0.1..5; 0: none
   const char *lcm_url; // NULL: the default one, without which we play on; given: failing to open it is an error
 } vs_field_def;
 vs_field_def vs_field_def_default(void);

@@ -6,7 +6,7 @@
 #include "vsss/config.h"
 #include "vsss/paths.h"
 
-enum { ROWS = 80, OWN_ROWS = 10 };
+enum { ROWS = 80, OWN_ROWS = 11 };
 
 static vs_status load(const char *path, vs_field_config *c, vs_error *err) {
   vs_field_def *d = &c->def;
@@ -21,6 +21,7 @@ static vs_status load(const char *path, vs_field_config *c, vs_error *err) {
       {"radio.robot0_id", VS_CONFIG_INT, &c->radio_id[0], 0, 0, 255, "number on the air of robot 0"},
       {"radio.robot1_id", VS_CONFIG_INT, &c->radio_id[1], 0, 0, 255, "of robot 1"},
       {"radio.robot2_id", VS_CONFIG_INT, &c->radio_id[2], 0, 0, 255, "of robot 2"},
+      {"lcm.image_hz", VS_CONFIG_REAL, &d->image_hz, 0, 0, 5, "pictures a second on VSSS_IMAGE; 0: none"},
   };
   int n =
       vs_vision_schema(&d->detector, &d->tracker, &d->camera_def, c->tag_family, rows + OWN_ROWS, ROWS - OWN_ROWS - 1);

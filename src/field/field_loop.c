@@ -48,7 +48,8 @@ vs_field_def vs_field_def_default(void) {
                         .camera_def = vs_camera_def_default(),
                         .detector = vs_detector_def_default(),
                         .tracker = vs_track_def_default(),
-                        .lcm = true};
+                        .lcm = true,
+                        .image_hz = 1};
 }
 
 static void add_note(char *note, size_t size, const char *text) {
@@ -227,6 +228,7 @@ vs_status vs_field_tick(vs_field *f, vs_field_tick_result *r, vs_error *err) {
   vs_tap_frame(&f->tap, &r->world, &f->game, &f->seen, frame.width, frame.height);
   vs_tap_command(&f->tap, &r->world, r->wheels, r->stop);
   if (r->decided) vs_tap_decision(&f->tap, f->control, &r->world);
+  vs_tap_picture(&f->tap, &frame);
   vs_radio_link link;
   vs_sender_state(f->sender, &link, &f->stats.serial);
   vs_tap_slow(&f->tap, &f->stats, &link, f->second);
@@ -239,7 +241,7 @@ void vs_field_get_stats(vs_field *f, vs_field_stats *out) {
   vs_sender_state(f->sender, &link, &f->stats.serial);
   memcpy(f->stats.robot, link.robot, sizeof f->stats.robot);
   f->stats.track = f->tracker.stats;
-  f->stats.lost_messages = f->tap.lost;
+  f->stats.lost_messages = vs_tap_lost(&f->tap);
   *out = f->stats;
 }
 

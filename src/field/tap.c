@@ -16,6 +16,12 @@ static void referee_spoke(const vs_message *message, void *user) {
   tap->news = true;
 }
 
+static void add_note(char *note, size_t size, const char *what, const vs_error *why) {
+  if (!note || !size) return;
+  size_t used = strlen(note);
+  snprintf(note + used, size - used, "playing on without %s: %s\n", what, why->text);
+}
+
 vs_status vs_tap_open(vs_tap *tap, const vs_field_def *def, const vs_calib *calib, char *note, size_t note_size,
                       vs_error *err) {
   memset(tap, 0, sizeof *tap);
@@ -30,15 +36,20 @@ vs_status vs_tap_open(vs_tap *tap, const vs_field_def *def, const vs_calib *cali
   vs_error why = {0};
   vs_status s = vs_bus_open(def->lcm_url, &tap->bus, &why);
   if (s == VS_OK) s = vs_bus_subscribe(tap->bus, VS_CH_REFEREE, false, referee_spoke, tap, &why);
-  if (s == VS_OK) return VS_OK;
+  if (s == VS_OK) {
+    if (def->image_hz > 0.0 && vs_pictures_new(tap->bus, def->image_hz, &tap->pictures, &why) != VS_OK)
+      add_note(note, note_size, "pictures on LCM", &why);
+    return VS_OK;
+  }
   vs_tap_close(tap);
   if (def->lcm_url) return vs_fail(err, s, "%s", why.text);
-  size_t used = strlen(note);
-  snprintf(note + used, note_size - used, "playing on without LCM: %s\n", why.text);
+  add_note(note, note_size, "LCM", &why);
   return VS_OK;
 }
 
 void vs_tap_close(vs_tap *tap) {
+  vs_pictures_free(tap->pictures);
+  tap->pictures = NULL;
   vs_bus_close(tap->bus);
   tap->bus = NULL;
 }
@@ -124,6 +135,10 @@ void vs_tap_decision(vs_tap *tap, const vs_control *control, const vs_world *wor
   send(tap, VS_CH_POLICY, world->time_us);
 }
 
+void vs_tap_picture(vs_tap *tap, const vs_frame *frame) {
+  if (tap->pictures) vs_pictures_show(tap->pictures, frame, epoch_us(frame->capture_us));
+}
+
 static void send_radio(vs_tap *tap, const vs_field_stats *all, const vs_radio_link *link, int64_t now_us) {
   vs_radio_link_report(link, tap->radio, &all->serial, now_us, &tap->message.as.radio);
   int64_t newest_us = 0;
@@ -170,3 +185,5 @@ void vs_tap_slow(vs_tap *tap, const vs_field_stats *all, const vs_radio_link *li
   if (tap->bus) send_stats(tap, all, second, now_us);
   memset(second, 0, VS_STAGES * sizeof *second);
 }
+
+int64_t vs_tap_lost(const vs_tap *tap) { return tap->lost + vs_pictures_lost(tap->pictures); }

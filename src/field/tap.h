@@ -3,12 +3,14 @@
 #ifndef VSSS_FIELD_TAP_H
 #define VSSS_FIELD_TAP_H
 
+#include "pictures.h"
 #include "vsss/bus.h"
 #include "vsss/control.h"
 #include "vsss/field_loop.h"
 
 typedef struct vs_tap {
-  vs_bus *bus; // NULL: nobody listens
+  vs_bus *bus;           // NULL: nobody listens
+  vs_pictures *pictures; // NULL: none are sent
   vs_team team;
   const char *policy, *radio; // the definition's
   vs_calib calib;
@@ -35,8 +37,12 @@ void vs_tap_frame(vs_tap *tap, const vs_world *world, const vs_game *game, const
 // Every frame, decided or not: a bridge on another computer counts a command's age from its frame, as our sender does.
 void vs_tap_command(vs_tap *tap, const vs_world *world, const vs_wheels wheels[VS_TEAM_SIZE], bool stop);
 void vs_tap_decision(vs_tap *tap, const vs_control *control, const vs_world *world);
+// What the camera saw, when the next picture is due.
+void vs_tap_picture(vs_tap *tap, const vs_frame *frame);
 // The slow channels, when their time has come: radio 5 times, statistics once a second. second: this second's stages,
 // emptied after they went out.
 void vs_tap_slow(vs_tap *tap, const vs_field_stats *all, const vs_radio_link *link, vs_histogram second[VS_STAGES]);
+
+int64_t vs_tap_lost(const vs_tap *tap); // messages, pictures among them
 
 #endif

@@ -159,6 +159,7 @@ static void count_message(const vs_message *message, void *user) {
   (void)user;
   heard[message->channel]++;
   if (message->channel == VS_CH_DETECTIONS) assert_int_equal(message->as.detections.width_px, W);
+  if (message->channel == VS_CH_IMAGE) assert_int_equal(message->as.image.width_px, W);
   if (message->channel == VS_CH_STATS) assert_int_equal(message->as.stats.n_stages, VS_STAGES);
 }
 
@@ -190,6 +191,12 @@ static void every_frame_is_told_and_a_referee_halts_play(void **state) {
   vs_field_get_stats(field, &stats);
   assert_int_equal(stats.events, 1);
   for (int i = 0; i < 100; i++) vs_bus_handle(outside, 5, NULL, NULL);
+  uint8_t jpeg[2048];
+  size_t size;
+  if (vs_image_jpeg(picture, 3 * W, 8, 8, 80, 1, jpeg, sizeof jpeg, &size, &err) == VS_OK) { // OpenCV is there
+    for (int i = 0; i < 300 && !heard[VS_CH_IMAGE]; i++) vs_bus_handle(outside, 20, NULL, NULL);
+    assert_true(heard[VS_CH_IMAGE] >= 1);
+  }
   // Before the halt alone: four frames, at least one decision.
   assert_true(heard[VS_CH_STATE] >= 4);
   assert_true(heard[VS_CH_DETECTIONS] >= 4);
