@@ -15,10 +15,11 @@
 #include "vsss/learn.h"
 
 typedef struct options {
-  const char *preset, *config, *run, *resume, *export, *untrained, *opponent, *realism, *learner, *imitate,
-      *eval_against;
+  const char *preset, *config, *run, *resume, *export, *untrained, *opponent, *reward, *reward_end, *realism, *learner,
+      *imitate, *eval_against;
   int seed, threads, imitate_updates, eval_matches;
   double minutes, transitions_m, checkpoint_min, eval_min;
+  bool league;
   vs_flag_list set;
 } options;
 
@@ -63,7 +64,12 @@ static vs_status settings(const options *o, vs_train_def *def, vs_error *err) {
   for (int i = 0; s == VS_OK && i < o->set.count; i++) s = vs_config_set(o->set.value[i], keys, err);
   const struct {
     const char *key, *value;
-  } texts[] = {{"opponent", o->opponent}, {"realism", o->realism}, {"learner", o->learner}};
+  } texts[] = {{"opponent", o->league ? "self=0.6,pool=0.4" : NULL},
+               {"opponent", o->opponent},
+               {"reward", o->reward},
+               {"reward_end", o->reward_end},
+               {"realism", o->realism},
+               {"learner", o->learner}};
   for (size_t i = 0; s == VS_OK && i < sizeof texts / sizeof *texts; i++) {
     char line[512];
     snprintf(line, sizeof line, "%s=%s", texts[i].key, texts[i].value ? texts[i].value : "");
@@ -279,6 +285,9 @@ int cmd_train(int argc, char **argv) {
       {"seed", VS_FLAG_INT, &o.seed, "N", "everything random follows from it; -1: as set", -1, 2147483647},
       {"threads", VS_FLAG_INT, &o.threads, "N", "0: as set", 0, 256},
       {"opponent", VS_FLAG_TEXT, &o.opponent, "MIX", "such as frozen, emc: or self=0.6,pool=0.4", 0, 0},
+      {"league", VS_FLAG_SWITCH, &o.league, NULL, "against itself and a pool of earlier selves", 0, 0},
+      {"reward", VS_FLAG_TEXT, &o.reward, "MIX", "paper, dense or goals, then term=weight; --set anneal_from_m,", 0, 0},
+      {"reward-end", VS_FLAG_TEXT, &o.reward_end, "MIX", "... anneal_to_m: what it becomes between these", 0, 0},
       {"realism", VS_FLAG_TEXT, &o.realism, "FILE", "sensors and dynamics drawn anew each episode", 0, 0},
       {"learner", VS_FLAG_TEXT, &o.learner, "NAME", "own or torch", 0, 0},
       {"imitate", VS_FLAG_TEXT, &o.imitate, "URI", "first clone this scripted player, such as emc:", 0, 0},
