@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "message_text.h"
 #include "report.h"
 #include "vsss/clock.h"
 #include "watch.h"
@@ -30,11 +31,9 @@ typedef struct sim_command {
 // The terminal: events as lines, score and clock as one line that rewrites itself.
 
 static void print_event(const vs_event *event, const vs_game *game) {
-  printf("%7.2f s  %-9s", event->time_s, vs_event_name(event->kind));
-  if (event->kind == VS_EVENT_GOAL) printf(" by %s", vs_team_name(event->team));
-  if (event->kind == VS_EVENT_PENALTY || event->kind == VS_EVENT_GOAL_KICK || event->kind == VS_EVENT_KICK_OFF)
-    printf(" for %s", vs_team_name(event->team));
-  if (event->kind == VS_EVENT_FREE_BALL) printf(" in quadrant %d", event->quadrant);
+  char text[64];
+  vs_event_text(event, text, sizeof text);
+  printf("%7.2f s  %s", event->time_s, text);
   if (event->kind == VS_EVENT_GOAL || event->kind == VS_EVENT_END)
     printf("  %d : %d", game->score[VS_BLUE], game->score[VS_YELLOW]);
   printf("\n");
