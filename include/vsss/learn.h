@@ -119,6 +119,8 @@ int vs_train_opponents(const vs_train *train, vs_train_opponent *out, int max);
 // NULL, 256 bytes) then says why, else it is empty. In a group rank 0 reads and all continue from its file; the other
 // ranks' matches start anew.
 vs_status vs_train_save(const vs_train *train, const char *path, vs_error *err);
+// Without matches and league (4.5 MB at 464-256-256): a run that continues from it meets itself as it is now first.
+vs_status vs_train_save_slim(const vs_train *train, const char *path, vs_error *err);
 vs_status vs_train_read_def(const char *path, vs_train_def *out, vs_error *err);
 vs_status vs_train_load(vs_train *train, const char *path, char *note, vs_error *err);
 

@@ -15,8 +15,8 @@
 #include "vsss/learn.h"
 
 typedef struct options {
-  const char *preset, *config, *run, *resume, *export, *untrained, *opponent, *reward, *reward_end, *realism, *learner,
-      *imitate, *eval_against;
+  const char *preset, *config, *run, *resume, *export, *slim, *untrained, *opponent, *reward, *reward_end, *realism,
+      *learner, *imitate, *eval_against;
   int seed, threads, imitate_updates, eval_matches;
   double minutes, transitions_m, checkpoint_min, eval_min;
   bool league;
@@ -101,6 +101,7 @@ static vs_status save(session *s, vs_error *err) {
   snprintf(path, sizeof path, "%s/policy.onnx", s->folder);
   if (status == VS_OK) status = vs_train_export(s->train, path, true, notes, err);
   if (status == VS_OK && s->opt->export) status = vs_train_export(s->train, s->opt->export, true, notes, err);
+  if (status == VS_OK && s->opt->slim) status = vs_train_save_slim(s->train, s->opt->slim, err);
   s->checkpoint_s = now_s();
   return status;
 }
@@ -301,6 +302,7 @@ int cmd_train(int argc, char **argv) {
       {"run", VS_FLAG_TEXT, &o.run, "FOLDER", "a new run: checkpoint, policy.onnx, CSV, TensorBoard", 0, 0},
       {"resume", VS_FLAG_TEXT, &o.resume, "FOLDER", "continue the run in this folder", 0, 0},
       {"export", VS_FLAG_TEXT, &o.export, "FILE", "write the policy here too", 0, 0},
+      {"slim", VS_FLAG_TEXT, &o.slim, "FILE", "a small checkpoint too; continue it as FOLDER/checkpoint", 0, 0},
       {"write-untrained", VS_FLAG_TEXT, &o.untrained, "FILE", "write a policy nobody trained as ONNX and stop", 0, 0},
       {.name = NULL},
   };

@@ -50,9 +50,9 @@ static void save_league(const vs_league *l, vs_bytes *out) {
   }
 }
 
-vs_status vs_train_save(const vs_train *train, const char *path, vs_error *err) {
+// What every checkpoint holds: settings, counters, networks, Adam.
+static void save_learner(const vs_train *train, vs_bytes *out) {
   const vs_learner *l = &train->learner;
-  vs_bytes out = {0};
   char settings[4096];
   counters numbers;
   memset(&numbers, 0, sizeof numbers);
@@ -60,13 +60,24 @@ vs_status vs_train_save(const vs_train *train, const char *path, vs_error *err) 
   numbers.adam_steps = l->steps, numbers.decision = train->rollout.decision;
   numbers.wall_s = train->wall_s;
   numbers.scale = train->scale;
-  vs_archive_begin(&out);
-  vs_archive_section(&out, "contract", vs_contract_hash_hex(), 16);
-  vs_archive_section(&out, "settings", settings, vs_train_def_text(&train->def, settings, sizeof settings));
-  vs_archive_section(&out, "counters", &numbers, sizeof numbers);
-  vs_archive_section(&out, "parameters", l->parameters, l->net.size * sizeof(float));
-  vs_archive_section(&out, "mean", l->mean, l->net.size * sizeof(float));
-  vs_archive_section(&out, "square", l->square, l->net.size * sizeof(float));
+  vs_archive_begin(out);
+  vs_archive_section(out, "contract", vs_contract_hash_hex(), 16);
+  vs_archive_section(out, "settings", settings, vs_train_def_text(&train->def, settings, sizeof settings));
+  vs_archive_section(out, "counters", &numbers, sizeof numbers);
+  vs_archive_section(out, "parameters", l->parameters, l->net.size * sizeof(float));
+  vs_archive_section(out, "mean", l->mean, l->net.size * sizeof(float));
+  vs_archive_section(out, "square", l->square, l->net.size * sizeof(float));
+}
+
+vs_status vs_train_save_slim(const vs_train *train, const char *path, vs_error *err) {
+  vs_bytes out = {0};
+  save_learner(train, &out);
+  return vs_archive_write(&out, path, err);
+}
+
+vs_status vs_train_save(const vs_train *train, const char *path, vs_error *err) {
+  vs_bytes out = {0};
+  save_learner(train, &out);
   save_league(&train->league, &out);
   vs_archive_section(&out, "observation", train->rollout.io.observation,
                      (size_t)VS_VECENV_ROWS(train->def.envs) * VS_OBS_SIZE * sizeof(float));
@@ -221,15 +232,17 @@ static vs_status load(vs_train *t, const vs_bytes *archive, const char *path, vs
   s = load_floats(archive, path, "parameters", l->parameters, l->net.size, err);
   if (s == VS_OK) s = load_floats(archive, path, "mean", l->mean, l->net.size, err);
   if (s == VS_OK) s = load_floats(archive, path, "square", l->square, l->net.size, err);
-  if (s == VS_OK) s = load_league(&t->league, archive, path, err);
+  bool slim = vs_archive_find(archive, path, "league", 0, &data, NULL, NULL) != VS_OK;
+  if (s == VS_OK && !slim) s = load_league(&t->league, archive, path, err);
+  if (s == VS_OK && slim) vs_train_hand_over(t);
   // The file holds the matches of rank 0; other ranks start theirs anew, and their slots' episodes with them.
-  if (s == VS_OK && vs_group_rank(t->group) == 0) s = load_matches(t, archive, path, err);
+  if (s == VS_OK && !slim && vs_group_rank(t->group) == 0) s = load_matches(t, archive, path, err);
   if (s != VS_OK) return s;
   t->updates = numbers.updates, t->transitions = numbers.transitions, t->wall_s = numbers.wall_s;
   t->scale = numbers.scale;
   l->steps = numbers.adam_steps;
   t->rollout.decision = numbers.decision;
-  t->started = vs_group_rank(t->group) == 0;
+  t->started = !slim && vs_group_rank(t->group) == 0;
   return VS_OK;
 }
 

@@ -20,8 +20,7 @@ static vs_status update(vs_train *t, uint64_t seed, double *loss, vs_error *err)
   return s;
 }
 
-// Every frozen self and the league's own copy become the clone.
-static void hand_over(vs_train *t) {
+void vs_train_hand_over(vs_train *t) {
   vs_net_extract_actor(&t->learner.net, t->learner.parameters, &t->rollout.actor, t->actor);
   for (int i = 0; i < t->league.selves; i++)
     if (t->league.self[i].parameters) memcpy(t->league.self[i].parameters, t->actor, t->league.size * sizeof *t->actor);
@@ -62,7 +61,7 @@ vs_status vs_train_imitate_over(vs_train *train, const vs_matches *matches, int 
   memset(train->learner.mean, 0, train->learner.net.size * sizeof(float));
   memset(train->learner.square, 0, train->learner.net.size * sizeof(float));
   train->learner.steps = 0;
-  if (s == VS_OK) hand_over(train);
+  if (s == VS_OK) vs_train_hand_over(train);
   return s;
 }
 

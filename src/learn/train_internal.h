@@ -33,6 +33,8 @@ vs_status vs_train_collect(vs_train *train, const vs_reward_weights *weights, do
 vs_status vs_train_rescale(vs_train *train, const vs_ppo_batch *batch, vs_error *err);
 // Sums over all ranks, in place; the structs are doubles throughout.
 vs_status vs_train_sum_up(const vs_train *train, vs_rollout_stats *played, vs_ppo_stats *ppo, vs_error *err);
+// Every frozen self becomes the present policy.
+void vs_train_hand_over(vs_train *train);
 // Clones who plays both sides of `matches` (taken over): the loop of imitate.c over any matches.
 vs_status vs_train_imitate_over(vs_train *train, const vs_matches *matches, int updates,
                                 bool (*progress)(void *context, double part, double loss), void *context,

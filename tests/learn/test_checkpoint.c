@@ -129,6 +129,30 @@ static void a_checkpoint_of_other_settings_is_refused(void **state) {
   vs_train_free(train);
 }
 
+static void a_slim_checkpoint_continues_the_networks_with_new_matches(void **state) {
+  (void)state;
+  vs_train_def def = tiny_def();
+  vs_train *train = open_tiny(&def), *again = open_tiny(&def);
+  updates(train, 3);
+  assert_ok(vs_train_save_slim(train, file, err));
+  struct stat status;
+  assert_int_equal(stat(file, &status), 0);
+  assert_true((size_t)status.st_size < 3 * train->learner.net.size * sizeof(float) + 4096);
+  assert_ok(vs_train_load(again, file, NULL, err));
+  size_t bytes = train->learner.net.size * sizeof(float);
+  assert_memory_equal(again->learner.parameters, train->learner.parameters, bytes);
+  assert_memory_equal(again->learner.square, train->learner.square, bytes);
+  assert_int_equal(again->transitions, train->transitions);
+  // Its frozen opponents are the policy as saved, not the untrained one.
+  vs_net_extract_actor(&train->learner.net, train->learner.parameters, &train->rollout.actor, train->actor);
+  assert_memory_equal(again->league.self[again->league.frozen].parameters, train->actor,
+                      train->league.size * sizeof(float));
+  updates(again, 1);
+  assert_int_equal(again->updates, 4);
+  vs_train_free(train);
+  vs_train_free(again);
+}
+
 static void a_full_disk_leaves_the_old_checkpoint_and_names_the_file(void **state) {
   (void)state;
   vs_train_def def = tiny_def();
@@ -218,6 +242,7 @@ int main(void) {
       cmocka_unit_test(a_resumed_run_continues_bit_for_bit),
       cmocka_unit_test(a_damaged_checkpoint_falls_back_to_the_one_before_and_says_so),
       cmocka_unit_test(a_checkpoint_of_other_settings_is_refused),
+      cmocka_unit_test(a_slim_checkpoint_continues_the_networks_with_new_matches),
       cmocka_unit_test(a_full_disk_leaves_the_old_checkpoint_and_names_the_file),
       cmocka_unit_test(a_run_killed_at_any_moment_resumes_exactly),
   };
