@@ -103,7 +103,7 @@ install: all $(B)/libvsss.so
 	cp -r models deploy lcm_types $(DESTDIR)$(PREFIX)/share/vsss
 	$(if $(MODULES),install -m 644 $(MODULES) $(DESTDIR)$(PREFIX)/share/vsss/build/lib)
 	@if [ -d build/onnxruntime ]; then cp -r build/onnxruntime $(DESTDIR)$(PREFIX)/share/vsss/build; fi
-	printf 'prefix=%s\nName: vsss\nDescription: IEEE VSSS simulator, environments and players\nVersion: 1\nCflags: -I$${prefix}/include\nLibs: -L$${prefix}/lib -lvsss\nLibs.private: %s\n' \
+	@printf 'prefix=%s\nName: vsss\nDescription: IEEE VSSS simulator, environments and players\nVersion: 1\nCflags: -I$${prefix}/include\nLibs: -L$${prefix}/lib -lvsss\nLibs.private: %s\n' \
 	  '$(PREFIX)' '$(LDLIBS_ALL)' > $(DESTDIR)$(PREFIX)/lib/pkgconfig/vsss.pc
 
 $(B)/libvsss.so: $(B)/libvsss.a

@@ -11,7 +11,8 @@ extern "C" {
 #endif
 
 // Writes the path of a file of ours, such as "models/vsss_contact.xml". Looked for in $VSSS_HOME, the executable's
-// folder and its parent, then the install prefix. VS_FAIL names every place tried.
+// folder and those above it, share/vsss beside the folder of the executable or of libvsss.so, and the install prefix.
+// VS_FAIL names every place tried.
 vs_status vs_path_find(const char *relative, char *out, size_t out_size, vs_error *err);
 
 // Loads build/lib/vsss_NAME.so, one of the modules that cost start-up time (opencv, torch, mpi), and returns its

@@ -1,3 +1,4 @@
+#define _GNU_SOURCE // dladdr
 #include "vsss/paths.h"
 
 #include <dlfcn.h>
@@ -12,36 +13,57 @@
 #define VSSS_PREFIX "/usr/local"
 #endif
 
-// The folder of the running executable, or "" where /proc does not tell.
+// Where the running executable and the library this code is in lie; "" where the system does not tell.
+static void folder_of(const char *path, char *out, size_t size) {
+  char copy[PATH_MAX];
+  snprintf(copy, sizeof copy, "%s", path);
+  snprintf(out, size, "%s", dirname(copy));
+}
+
 static void executable_folder(char *out, size_t size) {
   char path[PATH_MAX];
   ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
-  if (n <= 0) {
-    out[0] = '\0';
-    return;
-  }
-  path[n] = '\0';
-  snprintf(out, size, "%s", dirname(path));
+  path[n > 0 ? n : 0] = '\0';
+  out[0] = '\0';
+  if (n > 0) folder_of(path, out, size);
+}
+
+static void library_folder(char *out, size_t size) {
+  Dl_info info;
+  union {
+    vs_status (*function)(const char *, char *, size_t, vs_error *);
+    void *address;
+  } self = {vs_path_find};
+  out[0] = '\0';
+  if (dladdr(self.address, &info) && info.dli_fname && strchr(info.dli_fname, '/'))
+    folder_of(info.dli_fname, out, size);
 }
 
 vs_status vs_path_find(const char *relative, char *out, size_t out_size, vs_error *err) {
-  char folder[PATH_MAX];
-  executable_folder(folder, sizeof folder);
+  char program[PATH_MAX], library[PATH_MAX];
+  executable_folder(program, sizeof program);
+  library_folder(library, sizeof library);
   const char *home = getenv("VSSS_HOME");
-  // Tests live in build/<flavour>/tests/, so up to three levels above the executable.
-  const char *const ups[] = {"", "/..", "/../..", "/../../..", "/../../../.."};
+  // In a checkout the program lies beside models/, its tests up to four folders below; installed, in PREFIX/bin beside
+  // PREFIX/share/vsss, the library in PREFIX/lib.
+  const struct {
+    const char *folder, *below;
+  } places[] = {
+      {home ? home : "", ""},
+      {program, ""},
+      {program, "/.."},
+      {program, "/../.."},
+      {program, "/../../.."},
+      {program, "/../../../.."},
+      {program, "/../share/vsss"},
+      {library, "/../share/vsss"},
+      {VSSS_PREFIX, "/share/vsss"},
+  };
   char tried[384] = "";
-  for (size_t i = 0; i < 2 + sizeof ups / sizeof *ups; i++) {
-    char candidate[PATH_MAX + 64];
-    if (i == 0) {
-      if (!home) continue;
-      snprintf(candidate, sizeof candidate, "%s/%s", home, relative);
-    } else if (i <= sizeof ups / sizeof *ups) {
-      if (!folder[0]) continue;
-      snprintf(candidate, sizeof candidate, "%s%s/%s", folder, ups[i - 1], relative);
-    } else {
-      snprintf(candidate, sizeof candidate, VSSS_PREFIX "/share/vsss/%s", relative);
-    }
+  for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+    char candidate[PATH_MAX + 512];
+    if (!places[i].folder[0]) continue;
+    snprintf(candidate, sizeof candidate, "%s%s/%s", places[i].folder, places[i].below, relative);
     if (access(candidate, R_OK) == 0) {
       if (strlen(candidate) >= out_size) return vs_fail(err, VS_FAIL, "%s: path too long", candidate);
       memcpy(out, candidate, strlen(candidate) + 1);
