@@ -27,14 +27,14 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
                  .team = "blue",
                  .rules = "paper",
                  .drive = "contact",
-                 .seconds = 120,
+                 .seconds = 0,
                  .seed = 1,
                  .width = 640,
                  .height = 480};
   const vs_flag flags[] = {
       {"opponent", VS_FLAG_TEXT, &o->opponent, "URI", "who plays the other team", 0, 0},
       {"team", VS_FLAG_TEXT, &o->team, "TEAM", "which team has tags and radios: blue or yellow", 0, 0},
-      {"seconds", VS_FLAG_REAL, &o->seconds, "S", "length of a match", 1, 86400},
+      {"seconds", VS_FLAG_REAL, &o->seconds, "S", "length of a match; 0: 120, or the league's 600", 0, 86400},
       {"matches", VS_FLAG_INT, &o->matches, "N", "then stop; 0: until Ctrl-C", 0, 1000000},
       {"rules", VS_FLAG_TEXT, &o->rules, "RULES", "paper or league", 0, 0},
       {"drive", VS_FLAG_TEXT, &o->drive, "DRIVE", "contact or planar", 0, 0},
@@ -65,7 +65,7 @@ static vs_status fill(const options *o, const char *folder, vs_rig_def *def, vs_
   if (s == VS_OK) s = vs_rules_parse(o->rules, &rules, err);
   if (s != VS_OK) return s;
   def->referee = vs_referee_def_default(rules);
-  def->referee.duration_s = o->seconds;
+  if (o->seconds > 0) def->referee.duration_s = o->seconds;
   return VS_OK;
 }
 

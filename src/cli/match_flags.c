@@ -8,12 +8,11 @@ vs_match_flags vs_match_flags_default(void) {
   return (vs_match_flags){.drive = "contact",
                           .rules = "paper",
                           .placement = "paper",
-                          .seconds = 120,
                           .seed = 1,
                           .threads = processors > 0 ? (int)processors : 1};
 }
 
-vs_status vs_match_flags_open(const vs_match_flags *flags, vs_model **model, vs_env_def *env, vs_error *err) {
+vs_status vs_match_flags_open(vs_match_flags *flags, vs_model **model, vs_env_def *env, vs_error *err) {
   vs_drive drive;
   vs_rules rules;
   vs_placement_mode placement;
@@ -30,7 +29,8 @@ vs_status vs_match_flags_open(const vs_match_flags *flags, vs_model **model, vs_
   *env = vs_env_def_default(*model);
   env->referee = vs_referee_def_default(rules);
   env->referee.placement = placement;
-  env->referee.duration_s = flags->seconds;
+  if (flags->seconds > 0) env->referee.duration_s = flags->seconds;
+  flags->seconds = env->referee.duration_s;
   env->realism = realism;
   return VS_OK;
 }

@@ -11,11 +11,12 @@ typedef struct vs_match_flags {
   int seed, threads;
 } vs_match_flags;
 
-vs_match_flags vs_match_flags_default(void); // contact drive, paper rules, 120 s, seed 1, a thread for each processor
+vs_match_flags
+vs_match_flags_default(void); // contact drive, paper rules and their length, seed 1, a thread for each processor
 
 // Rows for a command's flag table; m is a vs_match_flags.
 #define VS_MATCH_FLAG_ROWS(m)                                                                                          \
-  {"seconds", VS_FLAG_REAL, &(m).seconds, "S", "length of a match, simulated", 1, 7200},                               \
+  {"seconds", VS_FLAG_REAL, &(m).seconds, "S", "length of a match, simulated; 0: 120, or the league's 600", 0, 7200},  \
       {"seed", VS_FLAG_INT, &(m).seed, "N", "same seed, same matches, for any number of threads", 0, 2147483647},      \
       {"threads", VS_FLAG_INT, &(m).threads, "N", "matches played at a time", 1, 1024},                                \
       {"drive", VS_FLAG_TEXT, &(m).drive, "NAME", "contact (the reference) or planar (the fast twin)", 0, 0},          \
@@ -24,8 +25,9 @@ vs_match_flags vs_match_flags_default(void); // contact drive, paper rules, 120 
     "realism", VS_FLAG_TEXT, &(m).realism, "FILE", "sensor and actuator model (INI); default: the paper's noise", 0, 0 \
   }
 
-// Loads the model and fills env, whose players are left NULL. The caller frees the model.
-vs_status vs_match_flags_open(const vs_match_flags *flags, vs_model **model, vs_env_def *env, vs_error *err);
+// Loads the model and fills env, whose players are left NULL, and flags->seconds where it was left to the rules. The
+// caller frees the model.
+vs_status vs_match_flags_open(vs_match_flags *flags, vs_model **model, vs_env_def *env, vs_error *err);
 
 // about, then the schemes of player URIs with a line of help each, for --help.
 void vs_match_flags_about(const char *about, char *out, size_t size);
