@@ -145,7 +145,7 @@ static void bad_input_is_named_in_one_line(void **state) {
   assert_refused("rig --opponent clever:", 2, "clever");
   assert_refused("rig --rules house", 2, "house");
   assert_refused("rig --drive rocket", 2, "rocket");
-  assert_refused("rig --seconds 0", 2, "--seconds 0: allowed are 1 to 86400");
+  assert_refused("rig --seconds -1", 2, "--seconds -1: allowed are 0 to 86400");
   assert_refused("rig extra", 2, "'extra' is not expected here");
 }
 

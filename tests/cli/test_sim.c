@@ -138,7 +138,7 @@ static void bad_requests_are_refused_in_one_line(void **state) {
   (void)state;
   assert_refused("sim --blue nobody:", 2, "nobody:");
   assert_refused("sim --blue onnx:/nowhere.onnx", 1, "/nowhere.onnx");
-  assert_refused("sim --seconds 0", 2, "--seconds");
+  assert_refused("sim --seconds -1", 2, "--seconds -1: allowed are 0 to 7200");
   assert_refused("sim --seconds nan", 2, "--seconds");
   assert_refused("sim --matches 0", 2, "--matches");
   assert_refused("sim --threads -1", 2, "--threads");
