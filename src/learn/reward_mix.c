@@ -15,8 +15,8 @@ static const vs_reward_weights dense = {{[VS_REWARD_DISTANCE] = 0.05,
                                          [VS_REWARD_GOAL] = 5.0,
                                          [VS_REWARD_FOUL] = 1.0,
                                          [VS_REWARD_PROGRESS] = 1.0,
-                                         [VS_REWARD_APPROACH] = 0.1,
-                                         [VS_REWARD_OWN_DISTANCE] = 0.05}};
+                                         [VS_REWARD_APPROACH] = 0.3,
+                                         [VS_REWARD_OWN_DISTANCE] = 0.1}};
 // Goals and fouls alone, and a trace of ball progress, so that a game without goals still teaches.
 static const vs_reward_weights goals = {{[VS_REWARD_GOAL] = 5.0, [VS_REWARD_FOUL] = 1.0, [VS_REWARD_PROGRESS] = 0.2}};
 
