@@ -30,14 +30,15 @@ struct vs_pictures {
 static vs_status squeeze(vs_pictures *p, vs_msg_image *image, vs_error *err) {
   static const int qualities[] = {80, 60, 40, 25};
   vs_status s = VS_FAIL;
-  for (int shrink = p->width > WIDTH_PX ? (p->width + WIDTH_PX - 1) / WIDTH_PX : 1; shrink <= SHRINK_MAX && s != VS_OK;
-       shrink++)
+  for (int shrink = 1; shrink <= SHRINK_MAX && s != VS_OK; shrink++) {
+    if (p->width / shrink > WIDTH_PX) continue;
     for (size_t i = 0; i < sizeof qualities / sizeof *qualities && s != VS_OK; i++) {
       size_t size = 0;
       s = vs_image_jpeg(p->bgr, 3 * p->width, p->width, p->height, qualities[i], shrink, p->jpeg, sizeof p->jpeg, &size,
                         err);
       *image = (vs_msg_image){p->width / shrink, p->height / shrink, "jpeg", (int)size, p->jpeg};
     }
+  }
   return s;
 }
 
