@@ -81,7 +81,7 @@ tsan:
 	@TSAN_OPTIONS=suppressions=$(CURDIR)/tests/tsan.supp $(MAKE) --no-print-directory FLAVOUR=tsan test
 
 lint:
-	@sh tests/lint/run.sh
+	@sh tests/lint.sh
 
 # N=what runs one of tests/bench/bench_what.c.
 bench: all $(BENCH_BIN)

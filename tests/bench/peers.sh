@@ -65,8 +65,8 @@ compare() { # label, our value, their value, unit
     "$(echo "$2 $3" | awk '{print $1 / $2}')" "$2" "$3" "$4"
 }
 
-planar=$(our planar_sim_s_per_s)
-contact=$(our contact_sim_s_per_s)
+planar=$(our env_planar_per_core)
+contact=$(our env_contact_per_core)
 learner=$(our learner_transitions_per_s_1_core)
 whole=$(our train_transitions_per_s_1_core)
 
