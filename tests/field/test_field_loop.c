@@ -165,13 +165,10 @@ static void count_message(const vs_message *message, void *user) {
 
 static void every_frame_is_told_and_a_referee_halts_play(void **state) {
   (void)state;
-  const char *url = "memq://";
-  vs_bus *probe;
   vs_error err = {0};
-  if (vs_bus_open(url, &probe, &err) != VS_OK) skip(); // built without LCM
-  vs_bus_close(probe);
+  if (vs_bus_supported(NULL) != VS_OK) skip(); // built without LCM
   vs_bus *outside;
-  url = "udpm://239.255.76.67:7717?ttl=0";
+  const char *url = "udpm://239.255.76.67:7717?ttl=0";
   if (vs_bus_open(url, &outside, &err) != VS_OK) {
     print_message("note: 1 check not run: no multicast route\n");
     return;
