@@ -75,8 +75,10 @@ tests: all $(TEST_BIN) $(EXTRA_TESTS)
 test: tests
 	@sh tests/run.sh $(B) $(T)
 
+# Up to GCC 13 the leak checker takes one in 256 dynamic TLS blocks for one of a glibc before 2.25, reads its address from
+# what lies before it and dies of it ("Tracer caught signal 11"); it is told not to look for such blocks.
 asan:
-	@$(MAKE) --no-print-directory FLAVOUR=asan test
+	@ASAN_OPTIONS=intercept_tls_get_addr=0:$$ASAN_OPTIONS $(MAKE) --no-print-directory FLAVOUR=asan test
 tsan:
 	@TSAN_OPTIONS=suppressions=$(CURDIR)/tests/tsan.supp $(MAKE) --no-print-directory FLAVOUR=tsan test
 
