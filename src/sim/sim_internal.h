@@ -58,6 +58,9 @@ struct vs_sim {
 // randomize.c: makes sim->mj fit sim->params. False: out of memory, sim->mj is the nominal model.
 bool vs_randomize_apply(vs_sim *sim);
 
+// outline.c: gives MuJoCo our contacts for robots that cannot tilt. Process-wide, before the first step.
+void vs_outline_install(void);
+
 // nearby.c
 void vs_nearby_bind(vs_model *model);       // at load
 bool vs_nearby_new(vs_sim *sim);            // false: out of memory

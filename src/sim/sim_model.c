@@ -232,6 +232,7 @@ vs_status vs_model_load(const vs_model_def *def, vs_model **out, vs_error *err) 
     return vs_fail(err, VS_USAGE, "%d physics steps per frame: use 1 to 1000, or 0 for the default",
                    def->substeps_per_frame);
   }
+  vs_outline_install();
   vs_model *model = calloc(1, sizeof *model);
   if (!model) return vs_fail(err, VS_FAIL, "out of memory");
   model->drive = def->drive;
