@@ -66,6 +66,7 @@ typedef struct vs_train_report {
   double transitions_per_s;             // of this update
   double simulate_s, infer_s, learn_s;  // of this update
   double reward, term[VS_REWARD_TERMS]; // means per transition (terms unweighted)
+  double weight[VS_REWARD_TERMS];       // of the terms in the reward of this update
   double entropy, kl, clip_fraction, explained_variance, policy_loss, value_loss, gradient_norm, learning_rate;
   double episodes, episode_s, goals_for, goals_against; // ended in this update; means per episode
   double frozen_score, replacements, pool;              // league

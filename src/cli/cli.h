@@ -45,9 +45,12 @@ int vs_cli_error(const char *command, const vs_error *err);
 void vs_cli_catch_interrupts(void);
 bool vs_cli_interrupted(void);
 
-// One line that rewrites itself on a terminal: bar, fraction, time left, then text. Silent where stderr is no terminal.
+// Lines that rewrite themselves on a terminal: bar, fraction, time left, then text, of which each '\n' begins another
+// line; all are cut to the terminal's width. Silent where stderr is no terminal.
 typedef struct vs_progress {
   long long start_us, last_us;
+  double start_fraction; // what was done when it began, once shown
+  int lines;             // on the terminal now, below the first
   bool terminal;
 } vs_progress;
 void vs_progress_start(vs_progress *progress);

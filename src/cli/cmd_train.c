@@ -2,6 +2,7 @@
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -106,24 +107,36 @@ static vs_status save(session *s, vs_error *err) {
   return status;
 }
 
-static void status_text(const session *s, char *out, size_t size) {
-  const vs_train_report *r = &s->report;
-  double total = r->simulate_s + r->infer_s + r->learn_s;
-  int used =
-      snprintf(out, size, "%.2f M, %.0f/s (sim %.0f infer %.0f learn %.0f %%)", r->transitions * 1e-6,
-               r->transitions_per_s, 100 * r->simulate_s / total, 100 * r->infer_s / total, 100 * r->learn_s / total);
-  vs_train_opponent opponent[8];
-  int count = vs_train_opponents(s->train, opponent, 8);
-  for (int i = 0; i < count && used < (int)size; i++)
-    used += snprintf(out + used, size - (size_t)used, " %s %+.2f", opponent[i].name, opponent[i].recent_score);
-  if (used < (int)size)
-    snprintf(out + used, size - (size_t)used, " reward %.3f H %.2f kl %.4f clip %.2f ev %.2f x%.0f", r->reward,
-             r->entropy, r->kl, r->clip_fraction, r->explained_variance, r->replacements);
+static void append(char *out, size_t size, const char *format, ...) {
+  size_t used = strlen(out);
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(out + used, size - used, format, arguments);
+  va_end(arguments);
 }
 
-// A line that rewrites itself on a terminal, a line a minute elsewhere.
+// Three lines: how fast; the reward and what its terms add to it; how the policy learns and fares.
+static void status_text(const session *s, char *out, size_t size) {
+  const vs_train_report *r = &s->report;
+  double percent = 100.0 / (r->simulate_s + r->infer_s + r->learn_s);
+  out[0] = '\0';
+  append(out, size, "%.2f M, %.0f/s (sim %.0f infer %.0f learn %.0f %%)", r->transitions * 1e-6, r->transitions_per_s,
+         percent * r->simulate_s, percent * r->infer_s, percent * r->learn_s);
+  append(out, size, "\n  reward %+.3f:", r->reward);
+  for (int k = 0; k < VS_REWARD_TERMS; k++)
+    if (r->weight[k] != 0.0)
+      append(out, size, " %s %+.3f", vs_reward_name((vs_reward_term)k), r->weight[k] * r->term[k]);
+  append(out, size, "\n  entropy %.2f kl %.4f clipped %.2f explained %.2f  score", r->entropy, r->kl, r->clip_fraction,
+         r->explained_variance);
+  vs_train_opponent opponent[8];
+  int count = vs_train_opponents(s->train, opponent, 8);
+  for (int i = 0; i < count; i++) append(out, size, " %s %+.2f", opponent[i].name, opponent[i].recent_score);
+  append(out, size, ", %.0f replaced", r->replacements);
+}
+
+// Lines that rewrite themselves on a terminal, a line a minute elsewhere.
 static void show(session *s) {
-  char text[512];
+  char text[1024];
   status_text(s, text, sizeof text);
   const vs_train_def *def = vs_train_settings(s->train);
   double fraction = def->transitions_m > 0.0 ? s->report.transitions * 1e-6 / def->transitions_m : 0.0;
@@ -132,6 +145,7 @@ static void show(session *s) {
     vs_progress_show(&s->progress, fraction, text);
   } else if (now_s() - s->line_s >= 60.0 || s->line_s == 0.0) {
     s->line_s = now_s();
+    for (char *end; (end = strchr(text, '\n')) != NULL;) *end = ' ';
     printf("%6.1f min  update %.0f  %s\n", s->report.wall_s / 60.0, s->report.update, text);
     fflush(stdout);
   }

@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "cli.h"
@@ -37,9 +38,27 @@ void vs_cli_catch_interrupts(void) {
 bool vs_cli_interrupted(void) { return interrupted; }
 
 void vs_progress_start(vs_progress *progress) {
-  progress->start_us = vs_clock_monotonic_us();
-  progress->last_us = 0;
-  progress->terminal = isatty(STDERR_FILENO);
+  *progress =
+      (vs_progress){.start_us = vs_clock_monotonic_us(), .start_fraction = -1, .terminal = isatty(STDERR_FILENO)};
+}
+
+// Back to the first of the lines shown, all of them erased.
+static void rewind_lines(vs_progress *progress) {
+  fprintf(stderr, "\r");
+  if (progress->lines > 0) fprintf(stderr, "\033[%dA", progress->lines);
+  fprintf(stderr, "\033[J");
+  progress->lines = 0;
+}
+
+static int terminal_width(void) {
+  struct winsize size;
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+static double seconds_left(vs_progress *progress, double fraction, long long now_us) {
+  if (progress->start_fraction < 0) progress->start_fraction = fraction;
+  double done = fraction - progress->start_fraction, spent_s = (double)(now_us - progress->start_us) * 1e-6;
+  return done > 0.0 ? spent_s * (1.0 - fraction) / done : 0.0;
 }
 
 void vs_progress_show(vs_progress *progress, double fraction, const char *text) {
@@ -47,19 +66,25 @@ void vs_progress_show(vs_progress *progress, double fraction, const char *text) 
   if (!progress->terminal || now - progress->last_us < 100000) return;
   progress->last_us = now;
   enum { WIDTH = 20 };
-  char bar[WIDTH + 1];
-  int full = (int)floor(fmin(fmax(fraction, 0.0), 1.0) * WIDTH);
+  char bar[WIDTH + 1], first[512];
+  int full = (int)floor(fmin(fmax(fraction, 0.0), 1.0) * WIDTH), width = terminal_width() - 1;
   for (int i = 0; i < WIDTH; i++) bar[i] = i < full ? '#' : '.';
   bar[WIDTH] = '\0';
-  double spent_s = (double)(now - progress->start_us) * 1e-6;
-  double left_s = fraction > 0.0 ? spent_s * (1.0 - fraction) / fraction : 0.0;
-  fprintf(stderr, "\r\033[K[%s] %3.0f %% %2d:%02d left  %s", bar, 100.0 * fraction, (int)left_s / 60, (int)left_s % 60,
-          text);
+  int left_s = (int)seconds_left(progress, fraction, now), line = (int)strcspn(text, "\n");
+  snprintf(first, sizeof first, "[%s] %3.0f %% %2d:%02d left  %.*s", bar, 100.0 * fraction, left_s / 60, left_s % 60,
+           line, text);
+  rewind_lines(progress);
+  fprintf(stderr, "%.*s", width, first);
+  for (text += line; *text; text += line) {
+    line = (int)strcspn(++text, "\n");
+    fprintf(stderr, "\n%.*s", line < width ? line : width, text);
+    progress->lines++;
+  }
   fflush(stderr);
 }
 
 void vs_progress_clear(vs_progress *progress) {
   if (!progress->terminal) return;
-  fprintf(stderr, "\r\033[K");
+  rewind_lines(progress);
   fflush(stderr);
 }

@@ -158,7 +158,8 @@ vs_status vs_train_sum_up(const vs_train *t, vs_rollout_stats *played, vs_ppo_st
   return s;
 }
 
-static void fill_report(const vs_train *t, const vs_learner_stats *learnt, vs_train_report *report) {
+static void fill_report(const vs_train *t, const vs_reward_weights *weights, const vs_learner_stats *learnt,
+                        vs_train_report *report) {
   const vs_rollout_stats *played = &t->rollout.stats;
   const vs_ppo_stats *ppo = &learnt->last;
   double episodes = played->episodes > 0.0 ? played->episodes : 1.0;
@@ -166,7 +167,10 @@ static void fill_report(const vs_train *t, const vs_learner_stats *learnt, vs_tr
   report->transitions = (double)t->transitions;
   report->wall_s = t->wall_s;
   report->reward = played->reward / played->transitions;
-  for (int k = 0; k < VS_REWARD_TERMS; k++) report->term[k] = played->terms[k] / played->transitions;
+  for (int k = 0; k < VS_REWARD_TERMS; k++) {
+    report->term[k] = played->terms[k] / played->transitions;
+    report->weight[k] = weights->weight[k];
+  }
   report->entropy = ppo->entropy / ppo->rows;
   report->kl = ppo->kl / ppo->rows;
   report->clip_fraction = ppo->clipped / ppo->rows;
@@ -221,7 +225,7 @@ vs_status vs_train_update(vs_train *train, vs_train_report *report, vs_error *er
   report->learn_s = end - played;
   report->transitions_per_s = batch.rows * vs_group_size(train->group) / (end - start);
   train->wall_s += end - start;
-  fill_report(train, &learnt, report);
+  fill_report(train, &weights, &learnt, report);
   return VS_OK;
 }
 
