@@ -285,7 +285,7 @@ static vs_status run(eval_command *c, vs_error *err) {
 }
 
 int cmd_eval(int argc, char **argv) {
-  eval_command c = {.match = vs_match_flags_default(), .blue = "emc:", .matches = 100};
+  eval_command c = {.match = vs_match_flags_default(), .blue = "onnx:", .matches = 100};
   const vs_flag flags[] = {
       {"blue", VS_FLAG_TEXT, &c.blue, "URI", "the player that is measured", 0, 0},
       {"against", VS_FLAG_TEXT, &c.against, "URI,...", "its opponents, all yellow [random:,inf:,emc:]", 0, 0},

@@ -240,10 +240,21 @@ static vs_status play(sim_command *c, vs_error *err) {
   return VS_OK;
 }
 
+// Our policy, unless this build or this checkout cannot play it.
+static const char *default_blue(void) {
+  vs_player *player = NULL;
+  vs_error why = {0};
+  vs_status s = vs_player_open("onnx:", &player, &why);
+  vs_player_close(player);
+  if (s == VS_OK) return "onnx:";
+  fprintf(stderr, "vsss sim: emc: plays blue: %s\n", why.text);
+  return "emc:";
+}
+
 int cmd_sim(int argc, char **argv) {
-  sim_command c = {.match = vs_match_flags_default(), .uri = {"emc:", "inf:"}, .matches = 1};
+  sim_command c = {.match = vs_match_flags_default(), .uri = {NULL, "inf:"}, .matches = 1};
   const vs_flag flags[] = {
-      {"blue", VS_FLAG_TEXT, &c.uri[VS_BLUE], "URI", "player that attacks +x", 0, 0},
+      {"blue", VS_FLAG_TEXT, &c.uri[VS_BLUE], "URI", "player that attacks +x [onnx:, our policy]", 0, 0},
       {"yellow", VS_FLAG_TEXT, &c.uri[VS_YELLOW], "URI", "player that attacks -x", 0, 0},
       {"matches", VS_FLAG_INT, &c.matches, "N", "how many", 1, 1000000},
       VS_MATCH_FLAG_ROWS(c.match),
@@ -261,6 +272,7 @@ int cmd_sim(int argc, char **argv) {
   if (help) return 0;
   vs_model *model = NULL;
   if (s == VS_OK) s = vs_match_flags_open(&c.match, &model, &c.env, &err);
+  if (s == VS_OK && !c.uri[VS_BLUE]) c.uri[VS_BLUE] = default_blue();
   if (s == VS_OK) {
     for (int t = 0; t < VS_TEAMS; t++) c.env.player[t] = c.uri[t];
     c.results = calloc((size_t)c.matches, sizeof *c.results);

@@ -44,9 +44,7 @@ static vs_status open_plugin(vs_player *player, const scheme *s, vs_error *err) 
 }
 
 static vs_status open_onnx(vs_player *player, const scheme *s, vs_error *err) {
-  const char *rest = player->uri + strlen(s->name);
-  if (!*player->rest) return vs_fail(err, VS_USAGE, "onnx: needs a file, as in onnx:models/policy/vsss.onnx");
-  return vs_policy_onnx_open(rest, &player->learned, err);
+  return vs_policy_onnx_open(player->uri + strlen(s->name), &player->learned, err);
 }
 
 static vs_status open_provided(vs_player *player, const scheme *s, vs_error *err) {
@@ -60,7 +58,7 @@ static vs_status open_provided(vs_player *player, const scheme *s, vs_error *err
 
 // The program's table. Rows after the built-in ones are registered once at start, before any thread.
 static scheme table[7 + MAX_PROVIDERS + 1] = {
-    {"onnx:", "FILE, a trained policy", open_onnx, NULL, NULL},
+    {"onnx:", "FILE, a trained policy; without a file the one that comes with vsss", open_onnx, NULL, NULL},
     {"emc:", "VSSS-EMC of 2019; ?pid=1: through its own wheel PID", open_builtin, &vs_player_emc, NULL},
     {"inf:", "PY-VSSS-INF", open_builtin, &vs_player_inf, NULL},
     {"emc22:", "VSSS-EMC of 2022", open_builtin, &vs_player_emc22, NULL},

@@ -17,7 +17,7 @@ struct vs_obs_player {
 };
 
 // policy_onnx.c; policy_onnx_stub.c where ONNX Runtime is missing (deploy/features.mk chooses). rest: what follows
-// "onnx:", a file name, perhaps with "?options".
+// "onnx:", a file name, perhaps with "?options"; no name: the policy that comes with vsss.
 vs_status vs_policy_onnx_open(const char *rest, vs_obs_player **out, vs_error *err);
 
 // Built-in players.

@@ -206,15 +206,15 @@ static vs_status prepare(onnx_player *p, vs_error *err) {
 
 vs_status vs_policy_onnx_open(const char *rest, vs_obs_player **out, vs_error *err) {
   static const vs_config_key no_options[] = {{.name = NULL}};
+  static const char shipped[] = "models/policy/vsss.onnx";
   *out = NULL;
   size_t length = strcspn(rest, "?");
-  if (length == 0) return vs_fail(err, VS_USAGE, "onnx: needs a file, such as onnx:build/untrained.onnx");
   vs_status s = vs_player_options("onnx:", rest + length + (rest[length] == '?'), no_options, err);
   if (s != VS_OK) return s;
   onnx_player *p = calloc(1, sizeof *p);
   if (!p) return vs_fail(err, VS_FAIL, "onnx:%s: out of memory", rest);
   p->base = (vs_obs_player){act, close_player, "onnx"};
-  snprintf(p->file, sizeof p->file, "%.*s", (int)length, rest);
+  snprintf(p->file, sizeof p->file, "%.*s", length ? (int)length : (int)strlen(shipped), length ? rest : shipped);
   // A file of ours, such as models/policy/vsss.onnx, is found from any folder.
   char found[PATH_MAX];
   if (p->file[0] != '/' && access(p->file, F_OK) != 0 && vs_path_find(p->file, found, sizeof found, NULL) == VS_OK)

@@ -68,7 +68,7 @@ static void a_round_robin_prints_cross_table_and_elo(void **state) {
 
 static void an_interrupted_evaluation_prints_what_is_done(void **state) {
   (void)state;
-  vsss_interrupt(&run, "eval --matches 100000 --against random:", "kicks off first");
+  vsss_interrupt(&run, "eval --blue emc: --matches 100000 --against random:", "kicks off first");
   assert_int_equal(run.status, 0);
   assert_non_null(strstr(run.out, "stopped: "));
   assert_non_null(strstr(run.out, "win % [95 %]"));

@@ -69,22 +69,28 @@ static void a_run_leaves_checkpoint_policy_tables_and_continues(void **state) {
   assert_refused(with_folder("train --run %s/a " SMALL), 2, "holds a run: continue it with --resume");
 }
 
-static void two_runs_of_one_seed_are_the_same(void **state) {
-  (void)state;
-  static char first[65536];
-  train("train --run %s/s1 " SMALL "--transitions 0.001 --seed 7");
-  train("train --run %s/s2 " SMALL "--transitions 0.001 --seed 7 --threads 2");
-  snprintf(first, sizeof first, "%s", content("%s/s1/progress.csv"));
-  content("%s/s2/progress.csv");
-  // All but the columns of time: compare the tail of the last line, from the reward on.
-  char *a = strrchr(first, ','), *b = strrchr(text, ',');
+// The last line of a run's progress from the reward on: all that no clock goes into.
+static const char *outcome(const char *format) {
+  content(format);
+  char *end = strrchr(text, ',');
   for (int column = 0; column < 20; column++) {
-    while (*--a != ',') {
-    }
-    while (*--b != ',') {
+    while (*--end != ',') {
     }
   }
-  assert_string_equal(a, b);
+  return end;
+}
+
+static void assert_same_outcome(const char *run_a, const char *run_b) {
+  static char first[65536];
+  snprintf(first, sizeof first, "%s", outcome(run_a));
+  assert_string_equal(first, outcome(run_b));
+}
+
+static void two_runs_of_one_seed_are_the_same(void **state) {
+  (void)state;
+  train("train --run %s/s1 " SMALL "--transitions 0.001 --seed 7");
+  train("train --run %s/s2 " SMALL "--transitions 0.001 --seed 7 --threads 2");
+  assert_same_outcome("%s/s1/progress.csv", "%s/s2/progress.csv");
 }
 
 static void interrupting_a_run_saves_it(void **state) {
@@ -144,33 +150,54 @@ static void wrong_settings_are_refused_with_the_allowed_range(void **state) {
 }
 
 // Two processes: as root, Open MPI wants two variables.
-static void two_ranks_train_together_and_a_dead_one_ends_the_run(void **state) {
-  (void)state;
-  char binary[4096], command[8192];
-  if (system("command -v mpirun >/dev/null") != 0 || access("build/lib/vsss_mpi.so", F_OK) != 0) {
-    print_message("note: 1 check not run: no mpirun, or a build without MPI\n");
-    return;
-  }
-  vsss_binary(binary, sizeof binary);
+static bool ranks_can_be_started(void) {
   setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
   setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
   setenv("LSAN_OPTIONS", "detect_leaks=0", 1); // Open MPI's own
-  snprintf(command, sizeof command,
-           "timeout 120 mpirun --oversubscribe -n 2 '%s' train --run %s/p " SMALL
-           "--transitions 0.001 </dev/null >%s/p.out 2>&1",
-           binary, folder, folder);
-  if (system(command) != 0) fail_msg("%s", content("%s/p.out"));
+  if (system("command -v mpirun >/dev/null") == 0 && access("build/lib/vsss_mpi.so", F_OK) == 0) return true;
+  print_message("note: 1 checks not run: no mpirun, or a build without MPI\n");
+  return false;
+}
+
+// command: what starts the binary twice.
+static int train_ranks(const char *command, const char *run_name) {
+  char binary[4096], line[8192];
+  vsss_binary(binary, sizeof binary);
+  snprintf(line, sizeof line, "%s '%s' train --run %s/%s " SMALL "--transitions 0.001 </dev/null >%s/%s.out 2>&1",
+           command, binary, folder, run_name, folder, run_name);
+  int status = system(line);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+}
+
+static void two_ranks_train_together_and_a_dead_one_ends_the_run(void **state) {
+  (void)state;
+  char binary[4096], command[8192];
+  if (!ranks_can_be_started()) return;
+  if (train_ranks("timeout 120 mpirun --oversubscribe -n 2", "p") != 0) fail_msg("%s", content("%s/p.out"));
   assert_non_null(strstr(content("%s/p.out"), "2 ranks, each:"));
   assert_int_equal(lines(content("%s/p/progress.csv")), 1 + 2); // 2 x 288 an update
   // Rank 1 is killed: mpirun ends, and what rank 0 saved last is whole.
+  vsss_binary(binary, sizeof binary);
   snprintf(
       command, sizeof command,
-      "timeout 120 mpirun --oversubscribe -n 2 sh -c '[ $OMPI_COMM_WORLD_RANK = 0 ] || (sleep 4; kill -9 $$) & exec "
-      "%s train --resume %s/p --transitions 1000 --checkpoint-every 0.001' </dev/null >%s/p.out 2>&1",
-      binary, folder, folder);
+      "cp -r %s/p %s/k; timeout 120 mpirun --oversubscribe -n 2 sh -c '[ $OMPI_COMM_WORLD_RANK = 0 ] || (sleep 4; kill "
+      "-9 $$) & exec %s train --resume %s/k --transitions 1000 --checkpoint-every 0.001' </dev/null >%s/k.out 2>&1",
+      folder, folder, binary, folder, folder);
   assert_int_not_equal(system(command), 0);
-  train("train --resume %s/p --transitions 0.001");
+  train("train --resume %s/k --transitions 0.001");
   assert_null(strstr(run.out, "damaged"));
+}
+
+static void two_hosts_train_as_two_ranks_on_one_do(void **state) {
+  (void)state;
+  if (!ranks_can_be_started() || !exists("%s/p/progress.csv")) return;
+  int status = train_ranks("sh tests/cli/two_hosts.sh", "h");
+  if (status == 77) {
+    print_message("note: 1 checks not run: %s", content("%s/h.out"));
+    return;
+  }
+  if (status != 0) fail_msg("status %d: %s", status, content("%s/h.out"));
+  assert_same_outcome("%s/p/progress.csv", "%s/h/progress.csv");
 }
 
 int main(void) {
@@ -183,6 +210,7 @@ int main(void) {
       cmocka_unit_test(a_damaged_checkpoint_is_named_and_the_one_before_continues),
       cmocka_unit_test(wrong_settings_are_refused_with_the_allowed_range),
       cmocka_unit_test(two_ranks_train_together_and_a_dead_one_ends_the_run),
+      cmocka_unit_test(two_hosts_train_as_two_ranks_on_one_do),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -186,7 +186,6 @@ static void a_missing_file_and_a_wrong_option_are_named(void **state) {
   expect_refusal("No such file");
   vs_player *player = NULL;
   vs_error err = {0};
-  assert_int_equal(vs_player_open("onnx:", &player, &err), VS_USAGE);
   assert_int_equal(vs_player_open("onnx:build/untrained.onnx?fast=1", &player, &err), VS_USAGE);
   assert_non_null(strstr(err.text, "fast=1"));
 }

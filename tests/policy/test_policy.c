@@ -39,7 +39,6 @@ static void words_after_a_built_in_scheme_are_usage_errors(void **state) {
   (void)state;
   assert_refused("zero:x", VS_USAGE, "zero:x");
   assert_refused("plugin:", VS_USAGE, "needs a file");
-  assert_refused("onnx:", VS_USAGE, "needs a file");
 }
 
 static void zero_stands_still(void **state) {
