@@ -1,6 +1,7 @@
 // src/cli/cmd_eval.c, through the real binary
 #include "assert_near.h"
 #include "interrupt_vsss.h"
+#include "test_folder.h"
 
 static vsss_run run;
 
@@ -14,21 +15,6 @@ static void read_file(const char *path, char *out, size_t size) {
   if (!f) fail_msg("%s was not written", path);
   vsss_read_all(f, out, size);
   fclose(f);
-}
-
-static char folder[64];
-
-static int make_folder(void **state) {
-  (void)state;
-  snprintf(folder, sizeof folder, "/tmp/vsss_eval_XXXXXX");
-  return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state) {
-  (void)state;
-  char command[128];
-  snprintf(command, sizeof command, "rm -r '%s'", folder);
-  return system(command) == 0 ? 0 : -1;
 }
 
 static void the_table_and_its_files_are_the_same_for_1_and_3_threads(void **state) {

@@ -3,26 +3,13 @@
 #include "assert_near.h"
 #include "cli/field_match.h"
 #include "field/tagged_picture.h"
+#include "test_folder.h"
 #include "vsss/bus.h"
 #include "vsss/calib.h"
 #include "vsss/clock.h"
 #include "vsss/frame_stream.h"
 #include "vsss/radio_codec.h"
 #include "vsss/radio_serial.h"
-
-static char folder[] = "/tmp/vsss_field_XXXXXX";
-
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : 1;
-}
-
-static int remove_folder(void **state) {
-  (void)state;
-  char command[128];
-  snprintf(command, sizeof command, "rm -rf '%s'", folder);
-  return system(command);
-}
 
 static const char *in_folder(const char *name) {
   static char path[4][128];

@@ -4,25 +4,13 @@
 
 #include "assert_near.h"
 #include "interrupt_vsss.h"
+#include "test_folder.h"
 
 // A run that takes a moment: few matches, small networks.
 #define SMALL "--threads 1 --set envs=4 --set steps=16 --set minibatch=64 --set hidden=16,16 "
 
 static vsss_run run;
-static char folder[64], text[65536];
-
-static int make_folder(void **state) {
-  (void)state;
-  snprintf(folder, sizeof folder, "/tmp/vsss_train_XXXXXX");
-  return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state) {
-  (void)state;
-  char command[128];
-  snprintf(command, sizeof command, "rm -r '%s'", folder);
-  return system(command) == 0 ? 0 : -1;
-}
+static char text[65536];
 
 static const char *with_folder(const char *format) {
   static char arguments[1024];

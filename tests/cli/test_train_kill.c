@@ -5,6 +5,7 @@
 
 #include "assert_near.h"
 #include "run_vsss.h"
+#include "test_folder.h"
 #include "vsss/rng.h"
 
 #define SETTINGS "--set envs=6 --set steps=16 --set minibatch=128 --set hidden=32,32 --set pool_every=3 --threads 1 "
@@ -12,21 +13,6 @@
 #define RUN SETTINGS "--transitions 0.0288 --checkpoint-every 0.001 "
 
 enum { UPDATES = 60, KILLS_MOST = 12 };
-
-static char folder[64];
-
-static int make_folder(void **state) {
-  (void)state;
-  snprintf(folder, sizeof folder, "/tmp/vsss_kill_XXXXXX");
-  return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state) {
-  (void)state;
-  char command[128];
-  snprintf(command, sizeof command, "rm -r '%s'", folder);
-  return system(command) == 0 ? 0 : -1;
-}
 
 // Starts vsss with these arguments; dead after delay_us, unless it ended before: then its exit status, else -1.
 static int start_and_kill(const char *arguments, unsigned delay_us) {

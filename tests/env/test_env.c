@@ -4,24 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "assert_near.h"
+#include "planar_model.h"
 #include "vsss/env.h"
 #include "vsss/geom.h"
-
-static vs_model *model; // of the planar drive, shared
-
-static int load_model(void **state) {
-  (void)state;
-  vs_error err;
-  vs_model_def def = vs_model_def_default(VS_DRIVE_PLANAR);
-  return vs_model_load(&def, &model, &err) == VS_OK ? 0 : -1;
-}
-
-static int free_model(void **state) {
-  (void)state;
-  vs_model_free(model);
-  return 0;
-}
 
 static vs_env *new_env(const char *blue, const char *yellow) {
   vs_env_def def = vs_env_def_default(model);

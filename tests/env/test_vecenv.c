@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "assert_near.h"
+#include "planar_model.h"
 #include "count_allocations.h"
 #include "vsss/vecenv.h"
 
@@ -27,21 +27,6 @@ static vs_vecenv_buffers buffers_of(arrays *a) {
                              .final_observation = a->final_observation[0],
                              .score = a->score[0],
                              .episode_s = a->episode_s};
-}
-
-static vs_model *model;
-
-static int load_model(void **state) {
-  (void)state;
-  vs_error err;
-  vs_model_def def = vs_model_def_default(VS_DRIVE_PLANAR);
-  return vs_model_load(&def, &model, &err) == VS_OK ? 0 : -1;
-}
-
-static int free_model(void **state) {
-  (void)state;
-  vs_model_free(model);
-  return 0;
 }
 
 // Blue external, yellow EMC, episodes of 2 s, a realistic camera and radio.

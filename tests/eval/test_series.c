@@ -2,23 +2,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "assert_near.h"
+#include "planar_model.h"
 #include "vsss/eval.h"
-
-static vs_model *model;
-
-static int load_model(void **state) {
-  (void)state;
-  vs_error err;
-  vs_model_def def = vs_model_def_default(VS_DRIVE_PLANAR);
-  return vs_model_load(&def, &model, &err) == VS_OK ? 0 : -1;
-}
-
-static int free_model(void **state) {
-  (void)state;
-  vs_model_free(model);
-  return 0;
-}
 
 static vs_series_def short_matches(const char *blue, const char *yellow, int matches, int threads) {
   vs_series_def def = {.env = vs_env_def_default(model), .matches = matches, .threads = threads, .seed = 3};

@@ -1,0 +1,23 @@
+// A folder of its own under /tmp for a test program, as the group set-up and tear-down of cmocka.
+#ifndef VSSS_TESTS_TEST_FOLDER_H
+#define VSSS_TESTS_TEST_FOLDER_H
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static char folder[64];
+
+static inline int make_folder(void **state) {
+  (void)state;
+  snprintf(folder, sizeof folder, "/tmp/vsss_test_XXXXXX");
+  return mkdtemp(folder) ? 0 : -1;
+}
+
+static inline int remove_folder(void **state) {
+  (void)state;
+  char command[128];
+  snprintf(command, sizeof command, "rm -rf '%s'", folder);
+  return system(command) == 0 ? 0 : -1;
+}
+
+#endif
