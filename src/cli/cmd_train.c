@@ -49,12 +49,22 @@ static vs_status make_folder(const char *path, vs_error *err) {
   return VS_OK;
 }
 
+// --resume names a run's folder, or a checkpoint: then a new run begins with what that one had learnt.
+static bool resumes_file(const options *o) {
+  struct stat info;
+  return o->resume && stat(o->resume, &info) == 0 && S_ISREG(info.st_mode);
+}
+
+static void checkpoint_to_resume(const options *o, char *path, size_t size) {
+  snprintf(path, size, resumes_file(o) ? "%s" : "%s/checkpoint", o->resume);
+}
+
 // Preset, then file, then flags: later ones win.
 static vs_status settings(const options *o, vs_train_def *def, vs_error *err) {
   char checkpoint[PATH_MAX];
   vs_status s = VS_OK;
   if (o->resume) {
-    snprintf(checkpoint, sizeof checkpoint, "%s/checkpoint", o->resume);
+    checkpoint_to_resume(o, checkpoint, sizeof checkpoint);
     s = vs_train_read_def(checkpoint, def, err);
   } else {
     s = vs_train_def_preset(o->preset, def, err);
@@ -234,12 +244,13 @@ static vs_status prepare(session *s, const vs_train_def *def, vs_error *err) {
   char path[PATH_MAX];
   vs_status status = s->first ? make_folder(s->folder, err) : VS_OK;
   snprintf(path, sizeof path, "%s/checkpoint", s->folder);
-  if (status == VS_OK && s->first && !s->opt->resume && access(path, F_OK) == 0)
+  if (status == VS_OK && s->first && (!s->opt->resume || resumes_file(s->opt)) && access(path, F_OK) == 0)
     return vs_fail(err, VS_USAGE, "%s holds a run: continue it with --resume %s, or choose another --run", s->folder,
                    s->folder);
   if (status == VS_OK) status = vs_train_new(def, s->group, &s->train, err);
   if (status == VS_OK && s->opt->resume) {
     char note[256];
+    checkpoint_to_resume(s->opt, path, sizeof path);
     status = vs_train_load(s->train, path, note, err);
     if (status == VS_OK && note[0]) printf("%s\n", note);
   }
@@ -254,7 +265,7 @@ static vs_status prepare(session *s, const vs_train_def *def, vs_error *err) {
 
 static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
   session s = {.opt = o};
-  snprintf(s.folder, sizeof s.folder, "%s", o->resume ? o->resume : o->run);
+  snprintf(s.folder, sizeof s.folder, "%s", o->resume && !resumes_file(o) ? o->resume : o->run);
   size_t used = (size_t)snprintf(s.command, sizeof s.command, "vsss");
   for (int i = 0; i < argc && used < sizeof s.command; i++)
     used += (size_t)snprintf(s.command + used, sizeof s.command - used, " %s", argv[i]);
@@ -314,9 +325,9 @@ int cmd_train(int argc, char **argv) {
       {"eval-against", VS_FLAG_TEXT, &o.eval_against, "URIS", "... against these players", 0, 0},
       {"eval-matches", VS_FLAG_INT, &o.eval_matches, "N", "... so many each", 1, 100000},
       {"run", VS_FLAG_TEXT, &o.run, "FOLDER", "a new run: checkpoint, policy.onnx, CSV, TensorBoard", 0, 0},
-      {"resume", VS_FLAG_TEXT, &o.resume, "FOLDER", "continue the run in this folder", 0, 0},
+      {"resume", VS_FLAG_TEXT, &o.resume, "FOLDER", "continue this run; a checkpoint: begin --run with it", 0, 0},
       {"export", VS_FLAG_TEXT, &o.export, "FILE", "write the policy here too", 0, 0},
-      {"slim", VS_FLAG_TEXT, &o.slim, "FILE", "a small checkpoint too; continue it as FOLDER/checkpoint", 0, 0},
+      {"slim", VS_FLAG_TEXT, &o.slim, "FILE", "a small checkpoint too, the networks alone", 0, 0},
       {"write-untrained", VS_FLAG_TEXT, &o.untrained, "FILE", "write a policy nobody trained as ONNX and stop", 0, 0},
       {.name = NULL},
   };

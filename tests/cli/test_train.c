@@ -81,6 +81,16 @@ static void two_runs_of_one_seed_are_the_same(void **state) {
   assert_same_outcome("%s/s1/progress.csv", "%s/s2/progress.csv");
 }
 
+// 288 transitions an update: the new run's first line is the fifth update.
+static void a_small_checkpoint_begins_a_new_run(void **state) {
+  (void)state;
+  train("train --run %s/b " SMALL "--transitions 0.001 --slim %s/small");
+  assert_refused(with_folder("train --run %s/b --resume %s/small"), 2, "holds a run");
+  train("train --run %s/n --resume %s/small --transitions 0.0015");
+  assert_non_null(strstr(content("%s/n/progress.csv"), "\n5,1440,"));
+  assert_int_equal(lines(content("%s/b/progress.csv")), 1 + 4); // the old one is as it was
+}
+
 static void interrupting_a_run_saves_it(void **state) {
   (void)state;
   vsss_interrupt(&run, with_folder("train --run %s/i " SMALL), "training in");
@@ -192,6 +202,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_run_leaves_checkpoint_policy_tables_and_continues),
       cmocka_unit_test(two_runs_of_one_seed_are_the_same),
+      cmocka_unit_test(a_small_checkpoint_begins_a_new_run),
       cmocka_unit_test(interrupting_a_run_saves_it),
       cmocka_unit_test(evaluation_is_written_beside_the_progress),
       cmocka_unit_test(a_script_is_imitated_before_the_run),
