@@ -70,7 +70,7 @@ static int goals_of_blue(const char *against) {
 
 static void our_policy_scores(void **state) {
   (void)state;
-  play(&run, "sim --seconds 0.1 --json");
+  play(&run, "sim --seconds 1 --json");
   if (strstr(run.err, "no ONNX Runtime")) {
     print_message("note: 1 checks not run: this build has no ONNX Runtime\n");
     return;
