@@ -30,17 +30,22 @@ static const figure figures[] = {
     {"league",
      "The league",
      "score, count",
-     {{"frozen_score", "score against the frozen self"}, {"replacements", "times it was replaced"}}},
+     {{"frozen_score", "score against the frozen self"},
+      {"replacements", "times it was replaced"},
+      {"pool", "in the pool"}}},
     {"policy", "Policy", "nats, fraction", {{"entropy", "entropy"}, {"kl", "KL"}, {"clip_fraction", "clipped"}}},
     {"value", "Value", "", {{"explained_variance", "explained variance"}, {"value_loss", "loss"}}},
     {"speed", "Speed", "transitions/s", {{"transitions_per_s", "transitions/s"}}},
 };
 
+// An update ends few episodes: each point is the mean of half a percent of the run.
 static void plot_figure(FILE *out, const figure *f, const char *folder, const char *ending) {
   fprintf(out, "set output '%s/%s.%s'\nset title '%s'\nset ylabel '%s'\nplot ", folder, f->name, ending, f->title,
           f->y);
   for (int i = 0; f->curve[i][0]; i++)
-    fprintf(out, "%s'%s/progress.csv' using (column('transitions')/1e6):(column('%s')) with lines lw 2 title '%s'",
+    fprintf(out,
+            "%s'%s/progress.csv' using (bin*floor(column('transitions')/1e6/bin)):(column('%s')) smooth unique "
+            "with lines lw 2 title '%s'",
             i ? ", " : "", folder, f->curve[i][0], f->curve[i][1]);
   fprintf(out, "\n");
 }
@@ -77,9 +82,11 @@ static vs_status plot(const char *folder, bool svg, vs_error *err) {
   FILE *out = popen("gnuplot 2>&1", "w");
   if (!out) return vs_fail(err, VS_FAIL, "cannot start gnuplot: %s", strerror(errno));
   fprintf(out,
-          "set terminal %s\nset datafile separator ','\nset key autotitle columnhead\nset grid\nset key outside "
-          "below\nset xlabel 'million transitions'\n",
-          svg ? "svg size 900,560 font 'sans,14'" : "pngcairo size 900,560 font 'sans,12'");
+          "set terminal %s\nset datafile separator ','\nset key autotitle columnhead\nset datafile columnheaders\nset "
+          "grid\nset key outside "
+          "below\nset xlabel 'million transitions'\n"
+          "stats '%s/progress.csv' using (column('transitions')/1e6) nooutput\nbin = STATS_max/200\n",
+          svg ? "svg size 900,560 font 'sans,14'" : "pngcairo size 900,560 font 'sans,12'", folder);
   for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) plot_figure(out, &figures[i], folder, ending);
   bool eval = has_rows(folder, "eval.csv");
   if (eval) plot_eval(out, folder, ending);
