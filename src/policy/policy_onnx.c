@@ -3,7 +3,9 @@
 // whatever else runs), preallocated tensors.
 #include <dlfcn.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -100,6 +102,26 @@ static vs_status set_options(onnx_player *p, OrtSessionOptions *options, vs_erro
   return check(p, s, "session options", err);
 }
 
+// Debian 13's ONNX Runtime says with the first session of a process, on 1,100 lines of standard error, that libonnx had
+// registered every operator already. Nothing is wrong, so nobody hears it; what fails is told by the status.
+static OrtStatus *create_session(onnx_player *p, const OrtSessionOptions *options) {
+  static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+  static bool registered;
+  pthread_mutex_lock(&lock);
+  int heard = registered ? -1 : fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0), nowhere = -1;
+  if (heard >= 0) nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);
+  OrtStatus *status = p->ort->CreateSession(p->env, p->file, options, &p->session);
+  if (nowhere >= 0) {
+    dup2(heard, STDERR_FILENO);
+    close(nowhere);
+  }
+  if (heard >= 0) close(heard);
+  registered = registered || !status;
+  pthread_mutex_unlock(&lock);
+  return status;
+}
+
 static vs_status load_model(onnx_player *p, vs_error *err) {
   if (access(p->file, R_OK) != 0) return vs_fail(err, VS_FAIL, "%s: %s", p->file, strerror(errno));
   vs_status s = check(p, p->ort->CreateEnv(ORT_LOGGING_LEVEL_FATAL, "vsss", &p->env), "ONNX Runtime", err);
@@ -108,8 +130,7 @@ static vs_status load_model(onnx_player *p, vs_error *err) {
   s = check(p, p->ort->CreateSessionOptions(&options), "ONNX Runtime", err);
   if (s == VS_OK) s = set_options(p, options, err);
   if (s == VS_OK)
-    s = check(p, p->ort->CreateSession(p->env, p->file, options, &p->session),
-              "not a whole ONNX model (truncated? export or copy it again)", err);
+    s = check(p, create_session(p, options), "not a whole ONNX model (truncated? export or copy it again)", err);
   if (options) p->ort->ReleaseSessionOptions(options);
   return s;
 }
