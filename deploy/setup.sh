@@ -65,7 +65,8 @@ ca-certificates python3-pip unzip  to fetch ONNX Runtime, which Debian 12 lacks"
 fi
 if [ "$dev" ]; then
   packages="$packages
-clang-format cppcheck shellcheck  make lint"
+clang-format cppcheck shellcheck  make lint
+iproute2            network namespaces, for the test of training on two hosts"
 fi
 
 # The names are the words before two spaces in a row.
