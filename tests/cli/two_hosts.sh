@@ -31,5 +31,9 @@ chmod 700 "$agent"
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_plm_rsh_agent="$agent" PRTE_MCA_plm_ssh_agent="$agent"
 export OMPI_MCA_btl=self,tcp OMPI_MCA_pml=ob1
-ip netns exec "$a" unshare --uts sh -c 'hostname vsss-a && exec "$@"' sh \
-  timeout 120 mpirun --host 10.213.7.1:1,10.213.7.2:1 -n 2 "$@" </dev/null
+on_both() {
+  ip netns exec "$a" unshare --uts sh -c 'hostname vsss-a && exec "$@"' sh \
+    timeout 120 mpirun --host 10.213.7.1:1,10.213.7.2:1 -n 2 "$@" </dev/null
+}
+on_both true >/dev/null 2>&1 || { echo "mpirun starts nothing across network namespaces"; exit 77; }
+on_both "$@"
