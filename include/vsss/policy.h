@@ -1,5 +1,6 @@
-// Players by URI: `emc:`, `inf:`, `emc22:`, `random:`, `zero:`, `onnx:FILE`, `onnx:` (the policy that comes with
-// vsss), `plugin:FILE.so`, and what the program registers (`lcm:`). A player either sees the world (scripted) or an observation (learned).
+// Players by URI: `emc:`, `inf:`, `emc22:`, `random:`, `zero:`, `onnx:FILE`, `onnx:` (the policy that comes with vsss),
+// `plugin:FILE.so`, and what the program registers (`lcm:`). A player either sees the world (scripted) or an
+// observation (learned).
 #ifndef VSSS_POLICY_H
 #define VSSS_POLICY_H
 
