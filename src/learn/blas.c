@@ -6,6 +6,23 @@
 // Values of CBLAS (netlib's cblas.h).
 enum { ROW_MAJOR = 101, PLAIN = 111, TRANSPOSED = 112 };
 
+// A function of a library as a pointer of any type: POSIX's way round ISO C, which knows no cast from void *.
+static bool find(void *library, const char *name, void *function) {
+  *(void **)function = dlsym(library, name);
+  return *(void **)function != NULL;
+}
+
+static vs_status open_onednn(vs_blas *out, vs_error *err) {
+  void *library = dlopen("libdnnl.so", RTLD_NOW | RTLD_LOCAL); // the link that libdnnl-dev sets, whatever the version
+  if (!library) return vs_fail(err, VS_FAIL, "training needs oneDNN: apt install libdnnl-dev (%.200s)", dlerror());
+  *out = (vs_blas){.name = "oneDNN"};
+  if (find(library, "dnnl_sgemm", (void *)&out->dnnl_sgemm) &&
+      find(library, "omp_get_max_threads", (void *)&out->max_threads) &&
+      find(library, "omp_set_num_threads", (void *)&out->set_threads))
+    return VS_OK;
+  return vs_fail(err, VS_FAIL, "libdnnl.so has no dnnl_sgemm over OpenMP: apt install libdnnl-dev");
+}
+
 // OpenBLAS chooses its kernels by the processor's model when it loads, and takes an old family for a model it does not
 // know: a processor with AVX-512 is told so, unless the user chose.
 static void choose_kernels(void) {
@@ -17,23 +34,38 @@ static void choose_kernels(void) {
 #endif
 }
 
-vs_status vs_blas_open(vs_blas *out, vs_error *err) {
+static vs_status open_openblas(vs_blas *out, vs_error *err) {
   choose_kernels();
   void *library = dlopen("libopenblas.so.0", RTLD_NOW | RTLD_LOCAL);
   if (!library) return vs_fail(err, VS_FAIL, "training needs OpenBLAS: apt install libopenblas0 (%.200s)", dlerror());
-  out->sgemm = (void (*)(int, int, int, int, int, int, float, const float *, int, const float *, int, float, float *,
-                         int))dlsym(library, "cblas_sgemm");
-  const char *(*name)(void) = (const char *(*)(void))dlsym(library, "openblas_get_corename");
-  void (*set_threads)(int) = (void (*)(int))dlsym(library, "openblas_set_num_threads");
-  if (!out->sgemm || !name || !set_threads)
+  *out = (vs_blas){.name = "OpenBLAS"};
+  void (*set_threads)(int);
+  if (!find(library, "cblas_sgemm", (void *)&out->cblas_sgemm) ||
+      !find(library, "openblas_set_num_threads", (void *)&set_threads))
     return vs_fail(err, VS_FAIL, "libopenblas.so.0 has no cblas_sgemm: apt install libopenblas0");
   set_threads(1);
-  out->kernels = name();
   return VS_OK;
+}
+
+vs_status vs_blas_open(vs_blas *out, vs_blas_library which, vs_error *err) {
+  if (which == VS_BLAS_OPENBLAS) return open_openblas(out, err);
+  vs_error no_onednn = {0};
+  vs_status s = open_onednn(out, &no_onednn);
+  if (s == VS_OK) return s;
+  if (which == VS_BLAS_ANY && open_openblas(out, err) == VS_OK) return VS_OK;
+  return vs_fail(err, s, "%s", no_onednn.text);
 }
 
 void vs_blas_multiply(const vs_blas *blas, bool transpose_a, bool transpose_b, int m, int n, int k, const float *a,
                       int lda, const float *b, int ldb, bool accumulate, float *c, int ldc) {
-  blas->sgemm(ROW_MAJOR, transpose_a ? TRANSPOSED : PLAIN, transpose_b ? TRANSPOSED : PLAIN, m, n, k, 1.0f, a, lda, b,
-              ldb, accumulate ? 1.0f : 0.0f, c, ldc);
+  float beta = accumulate ? 1.0f : 0.0f;
+  if (blas->cblas_sgemm) {
+    blas->cblas_sgemm(ROW_MAJOR, transpose_a ? TRANSPOSED : PLAIN, transpose_b ? TRANSPOSED : PLAIN, m, n, k, 1.0f, a,
+                      lda, b, ldb, beta, c, ldc);
+    return;
+  }
+  int threads = blas->max_threads(); // of the calling thread; whoever else uses OpenMP on it (libtorch) has it back
+  blas->set_threads(1);
+  blas->dnnl_sgemm(transpose_a ? 'T' : 'N', transpose_b ? 'T' : 'N', m, n, k, 1.0f, a, lda, b, ldb, beta, c, ldc);
+  blas->set_threads(threads);
 }

@@ -73,7 +73,6 @@ CLONES void vs_kernel_head_backward(const float *restrict x, float *restrict d, 
 }
 
 CLONES void vs_kernel_column_sums(const float *restrict x, size_t rows, size_t columns, float *restrict out) {
-  memset(out, 0, columns * sizeof *out);
   for (size_t row = 0; row < rows; row++) {
     const float *restrict line = x + row * columns;
     for (size_t i = 0; i < columns; i++) out[i] += line[i];

@@ -22,7 +22,7 @@ void vs_kernel_dot(const float *x, size_t stride, size_t rows, size_t width, con
 void vs_kernel_head_backward(const float *x, float *d, size_t stride, size_t rows, size_t width, const float *weight,
                              const float *dout, size_t outputs, float *dweight, float *dbias);
 
-// out[column] = sum over rows.
+// out[column] += sum over rows.
 void vs_kernel_column_sums(const float *x, size_t rows, size_t columns, float *out);
 
 // a += b.

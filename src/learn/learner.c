@@ -6,11 +6,12 @@
 
 #include "kernels.h"
 
-enum { A = VS_ACTION_SIZE };
+// BLOCK: rows worked on at once, so that all between gathering them and their gradients stays in the second-level cache.
+enum { A = VS_ACTION_SIZE, BLOCK = 128 };
 
-// What one piece of a minibatch needs: its rows gathered, activations, its part of the gradient.
+// What one piece of a minibatch needs: a block of its rows gathered, activations, its part of the gradient.
 struct vs_learner_part {
-  int capacity; // rows
+  int capacity; // rows of a block
   float *x, *log_u, *log_1_u, *old_log_p, *advantage, *target, *old_value, *draw, *dvalue;
   float *block; // owns the arrays above
   vs_net_work work;
@@ -45,7 +46,7 @@ static void part_free(struct vs_learner_part *part) {
 
 vs_status vs_learner_init(vs_learner *learner, const vs_learner_def *def, vs_pool *pool, uint64_t seed, vs_error *err) {
   *learner = (vs_learner){.def = *def, .pool = pool};
-  vs_status s = vs_blas_open(&learner->blas, err);
+  vs_status s = vs_blas_open(&learner->blas, VS_BLAS_ANY, err);
   if (s == VS_OK) s = vs_net_init(&learner->net, &def->shape, err);
   if (s != VS_OK) return s;
   size_t size = (learner->net.size + 15) / 16 * 16;
@@ -55,6 +56,7 @@ vs_status vs_learner_init(vs_learner *learner, const vs_learner_def *def, vs_poo
   if (!learner->parameters || !learner->gradient || !learner->part)
     s = vs_fail(err, VS_FAIL, "out of memory for %zu parameters", size);
   int rows = (def->minibatch + def->pieces - 1) / def->pieces;
+  if (rows > BLOCK) rows = BLOCK;
   for (int i = 0; s == VS_OK && i < def->pieces; i++) s = part_init(&learner->part[i], &learner->net, rows, err);
   if (s == VS_OK) {
     memset(learner->parameters, 0, 3 * size * sizeof(float));
@@ -113,15 +115,19 @@ static void gradient_piece(void *context, int piece, int thread) {
   vs_learner *l = j->learner;
   struct vs_learner_part *part = &l->part[piece];
   int from = (int)((long long)j->count * piece / l->def.pieces);
-  int count = (int)((long long)j->count * (piece + 1) / l->def.pieces) - from;
+  int to = (int)((long long)j->count * (piece + 1) / l->def.pieces);
   part->stats = (vs_ppo_stats){0};
-  gather(j, part, j->rows + from, count);
-  const vs_ppo_batch batch = gathered(part, count);
-  vs_net_forward(&l->net, &l->blas, l->parameters, part->x, count, &part->work);
-  vs_ppo_loss(&l->def.ppo, &batch, part->work.raw, part->work.value, j->total_rows, part->draw, part->dvalue,
-              &part->stats);
-  vs_net_backward(&l->net, &l->blas, l->parameters, part->x, count, part->draw, part->dvalue, &part->work,
-                  part->gradient);
+  memset(part->gradient, 0, l->net.size * sizeof(float));
+  for (int at = from; at < to; at += part->capacity) {
+    int count = to - at < part->capacity ? to - at : part->capacity;
+    gather(j, part, j->rows + at, count);
+    const vs_ppo_batch batch = gathered(part, count);
+    vs_net_forward(&l->net, &l->blas, l->parameters, part->x, count, &part->work);
+    vs_ppo_loss(&l->def.ppo, &batch, part->work.raw, part->work.value, j->total_rows, part->draw, part->dvalue,
+                &part->stats);
+    vs_net_backward(&l->net, &l->blas, l->parameters, part->x, count, part->draw, part->dvalue, &part->work,
+                    part->gradient);
+  }
 }
 
 // Parameters are shared out in ranges for what is done to each alone.

@@ -172,8 +172,6 @@ static void backward_heads(const vs_net *net, const float *parameters, int rows,
   const int top = net->shape.layers - 1, last = net->shape.width[top];
   for (int n = 0; n < net->nets; n++) {
     size_t outputs = (size_t)vs_net_outputs(net, n);
-    memset(gradient + net->head_weight[n], 0, outputs * (size_t)last * sizeof *gradient);
-    memset(gradient + net->head_bias[n], 0, outputs * sizeof *gradient);
     vs_kernel_head_backward(work->hidden[top] + n * last, work->gradient[top] + n * last, (size_t)(net->nets * last),
                             (size_t)rows, (size_t)last, parameters + net->head_weight[n], n == VS_ACTOR ? draw : dvalue,
                             outputs, gradient + net->head_weight[n], gradient + net->head_bias[n]);
@@ -189,14 +187,14 @@ void vs_net_backward(const vs_net *net, const vs_blas *blas, const float *parame
     const int width = s->width[l], all = nets * width;
     vs_kernel_column_sums(work->gradient[l], (size_t)rows, (size_t)all, gradient + net->bias[l]);
     if (l == 0) {
-      vs_blas_multiply(blas, true, false, s->inputs, all, rows, x, s->inputs, work->gradient[0], all, false,
+      vs_blas_multiply(blas, true, false, s->inputs, all, rows, x, s->inputs, work->gradient[0], all, true,
                        gradient + net->weight[0][0], all);
       continue;
     }
     const int before = s->width[l - 1], all_before = nets * before;
     for (int n = 0; n < nets; n++) {
       vs_blas_multiply(blas, true, false, before, width, rows, work->hidden[l - 1] + n * before, all_before,
-                       work->gradient[l] + n * width, all, false, gradient + net->weight[l][n], width);
+                       work->gradient[l] + n * width, all, true, gradient + net->weight[l][n], width);
       vs_blas_multiply(blas, false, true, rows, before, width, work->gradient[l] + n * width, all,
                        parameters + net->weight[l][n], width, false, work->gradient[l - 1] + n * before, all_before);
     }

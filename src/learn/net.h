@@ -62,7 +62,7 @@ void vs_net_forward(const vs_net *net, const vs_blas *blas, const float *paramet
                     vs_net_work *work);
 
 // After vs_net_forward on the same x: the gradient of a loss by draw [rows][2 * actions] and dvalue [rows] (its
-// derivatives by raw and value; dvalue NULL without a critic) into gradient[net->size], overwriting it.
+// derivatives by raw and value; dvalue NULL without a critic), added to gradient[net->size].
 void vs_net_backward(const vs_net *net, const vs_blas *blas, const float *parameters, const float *x, int rows,
                      const float *draw, const float *dvalue, vs_net_work *work, float *gradient);
 

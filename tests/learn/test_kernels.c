@@ -58,7 +58,7 @@ static void adam_takes_its_first_step_as_the_paper_says(void **state) {
 static void sums_run_over_rows(void **state) {
   (void)state;
   const float x[6] = {1, 2, 3, 10, 20, 30};
-  float sums[3], a[3] = {1, 1, 1};
+  float sums[3] = {0}, a[3] = {1, 1, 1};
   vs_kernel_column_sums(x, 2, 3, sums);
   vs_kernel_add(a, sums, 3);
   for (int i = 0; i < 3; i++) assert_near(a[i], 11.0 * (i + 1) + 1.0, 1e-6);

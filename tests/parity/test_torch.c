@@ -72,7 +72,7 @@ static void our_networks_agree_with_torch_on_1000_observations(void **state) {
   vs_blas blas;
   vs_net_work work;
   make_net(&net, &parameters);
-  assert_ok(vs_blas_open(&blas, err));
+  assert_ok(vs_blas_open(&blas, VS_BLAS_ANY, err));
   assert_ok(vs_net_work_init(&work, &net, OBSERVATIONS, false, err));
   static float x[OBSERVATIONS * VS_OBS_SIZE], raw[OBSERVATIONS * 4], value[OBSERVATIONS];
   random_floats(x, OBSERVATIONS * VS_OBS_SIZE, -1.0, 1.0, 4);

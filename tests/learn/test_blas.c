@@ -1,0 +1,59 @@
+// Tests src/learn/blas.c
+#include <stdlib.h>
+
+#include "assert_near.h"
+#include "learn/blas.h"
+#include "vsss/rng.h"
+
+enum { M = 37, N = 21, K = 53, PAD = 3 }; // no multiples of a vector's width; rows lie further apart than they are long
+
+// One product against sums in double.
+static void check(const vs_blas *blas, bool transpose_a, bool transpose_b, bool accumulate) {
+  enum { A_MAX = (M > K ? M : K) + PAD, B_MAX = (K > N ? K : N) + PAD };
+  static float a[A_MAX * A_MAX], b[B_MAX * B_MAX], c[M * (N + PAD)], before[M * (N + PAD)];
+  vs_rng rng = vs_rng_make(3, 0);
+  for (size_t i = 0; i < sizeof a / sizeof *a; i++) a[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
+  for (size_t i = 0; i < sizeof b / sizeof *b; i++) b[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
+  for (size_t i = 0; i < sizeof c / sizeof *c; i++) before[i] = c[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
+  int lda = (transpose_a ? M : K) + PAD, ldb = (transpose_b ? K : N) + PAD, ldc = N + PAD;
+  vs_blas_multiply(blas, transpose_a, transpose_b, M, N, K, a, lda, b, ldb, accumulate, c, ldc);
+  for (int i = 0; i < M; i++)
+    for (int j = 0; j < ldc; j++) {
+      double sum = accumulate || j >= N ? before[i * ldc + j] : 0.0;
+      for (int k = 0; k < K && j < N; k++)
+        sum +=
+            (double)(transpose_a ? a[k * lda + i] : a[i * lda + k]) * (transpose_b ? b[j * ldb + k] : b[k * ldb + j]);
+      assert_near(c[i * ldc + j], sum, 1e-5);
+    }
+}
+
+static void check_all(const vs_blas *blas) {
+  for (int kind = 0; kind < 8; kind++) check(blas, kind & 1, kind & 2, kind & 4);
+}
+
+static void both_libraries_multiply_and_add_to_what_was_there(void **state) {
+  (void)state;
+  vs_blas blas;
+  assert_ok(vs_blas_open(&blas, VS_BLAS_ONEDNN, err));
+  assert_string_equal(blas.name, "oneDNN");
+  check_all(&blas);
+  assert_ok(vs_blas_open(&blas, VS_BLAS_OPENBLAS, err));
+  assert_string_equal(blas.name, "OpenBLAS");
+  check_all(&blas);
+}
+
+static void onednn_is_the_first_choice_and_leaves_openmp_as_it_was(void **state) {
+  (void)state;
+  vs_blas blas;
+  assert_ok(vs_blas_open(&blas, VS_BLAS_ANY, err));
+  assert_string_equal(blas.name, "oneDNN");
+  blas.set_threads(3);
+  check_all(&blas);
+  assert_int_equal(blas.max_threads(), 3);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(both_libraries_multiply_and_add_to_what_was_there),
+                                     cmocka_unit_test(onednn_is_the_first_choice_and_leaves_openmp_as_it_was)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
