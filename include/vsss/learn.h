@@ -42,7 +42,8 @@ typedef struct vs_train_def {
   int epochs, minibatch, pieces;
   char hidden[64]; // layer sizes, such as "256,256"
   double first_shape;
-  char learner[16]; // own or torch
+  char learner[16];   // own or torch
+  char precision[16]; // of the own learner's products: fp32, bf16 or auto
   // How long.
   double transitions_m; // millions; 0: until stopped
 } vs_train_def;
@@ -106,6 +107,7 @@ vs_status vs_train_imitate(vs_train *train, const char *uri, int updates,
 bool vs_train_done(const vs_train *train); // transitions_m reached
 double vs_train_updates(const vs_train *train);
 double vs_train_transitions(const vs_train *train);
+const char *vs_train_products(const vs_train *train); // what multiplies, such as "bf16 products by oneDNN"
 const vs_train_def *vs_train_settings(const vs_train *train);
 // Results against kind k of the opponent mix: its name, episodes, win, draw, loss so far, recent mean goal difference.
 typedef struct vs_train_opponent {

@@ -278,8 +278,8 @@ static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
   if (status == VS_OK) status = prepare(&s, &def, err);
   if (status == VS_OK && s.first) {
     if (s.group) printf("%d ranks, each:\n", vs_group_size(s.group));
-    printf("training in %s: %d matches x %d steps, %d threads, %s drive, against %s\n", s.folder, def.envs, def.steps,
-           def.threads, def.drive, def.opponent);
+    printf("training in %s: %d matches x %d steps, %d threads, %s drive, against %s; %s\n", s.folder, def.envs,
+           def.steps, def.threads, def.drive, def.opponent, vs_train_products(s.train));
     fflush(stdout);
   }
   if (status == VS_OK && o->imitate) status = imitate(&s, err);

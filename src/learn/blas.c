@@ -12,10 +12,21 @@ static bool find(void *library, const char *name, void *function) {
   return *(void **)function != NULL;
 }
 
+static bool processor_has_bf16(void) {
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  return __builtin_cpu_supports("avx512bf16");
+#else
+  return false;
+#endif
+}
+
 static vs_status open_onednn(vs_blas *out, vs_error *err) {
   void *library = dlopen("libdnnl.so", RTLD_NOW | RTLD_LOCAL); // the link that libdnnl-dev sets, whatever the version
   if (!library) return vs_fail(err, VS_FAIL, "training needs oneDNN: apt install libdnnl-dev (%.200s)", dlerror());
   *out = (vs_blas){.name = "oneDNN"};
+  // Exported by both releases' libraries, though their headers keep it back: where it is missing, floats have to do.
+  if (processor_has_bf16()) find(library, "dnnl_gemm_bf16bf16f32", (void *)&out->dnnl_bf16);
   if (find(library, "dnnl_sgemm", (void *)&out->dnnl_sgemm) &&
       find(library, "omp_get_max_threads", (void *)&out->max_threads) &&
       find(library, "omp_set_num_threads", (void *)&out->set_threads))
@@ -56,6 +67,14 @@ vs_status vs_blas_open(vs_blas *out, vs_blas_library which, vs_error *err) {
   return vs_fail(err, s, "%s", no_onednn.text);
 }
 
+// oneDNN works on the calling thread alone from here on; returns how many OpenMP gave it, for whoever else uses OpenMP
+// on this thread (libtorch).
+static int single_thread(const vs_blas *blas) {
+  int threads = blas->max_threads();
+  blas->set_threads(1);
+  return threads;
+}
+
 void vs_blas_multiply(const vs_blas *blas, bool transpose_a, bool transpose_b, int m, int n, int k, const float *a,
                       int lda, const float *b, int ldb, bool accumulate, float *c, int ldc) {
   float beta = accumulate ? 1.0f : 0.0f;
@@ -64,8 +83,17 @@ void vs_blas_multiply(const vs_blas *blas, bool transpose_a, bool transpose_b, i
                       lda, b, ldb, beta, c, ldc);
     return;
   }
-  int threads = blas->max_threads(); // of the calling thread; whoever else uses OpenMP on it (libtorch) has it back
-  blas->set_threads(1);
+  int threads = single_thread(blas);
   blas->dnnl_sgemm(transpose_a ? 'T' : 'N', transpose_b ? 'T' : 'N', m, n, k, 1.0f, a, lda, b, ldb, beta, c, ldc);
+  blas->set_threads(threads);
+}
+
+bool vs_blas_has_half(const vs_blas *blas) { return blas->dnnl_bf16 != NULL; }
+
+void vs_blas_multiply_half(const vs_blas *blas, bool transpose_a, bool transpose_b, int m, int n, int k,
+                           const uint16_t *a, int lda, const uint16_t *b, int ldb, bool accumulate, float *c, int ldc) {
+  int threads = single_thread(blas);
+  blas->dnnl_bf16(transpose_a ? 'T' : 'N', transpose_b ? 'T' : 'N', m, n, k, 1.0f, a, lda, b, ldb,
+                  accumulate ? 1.0f : 0.0f, c, ldc);
   blas->set_threads(threads);
 }

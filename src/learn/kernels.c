@@ -79,6 +79,15 @@ CLONES void vs_kernel_column_sums(const float *restrict x, size_t rows, size_t c
   }
 }
 
+CLONES void vs_kernel_round(const float *restrict x, size_t count, uint16_t *restrict out) {
+  for (size_t i = 0; i < count; i++) {
+    uint32_t bits;
+    memcpy(&bits, &x[i], sizeof bits);
+    uint32_t rounded = (bits + 0x7fffu + (bits >> 16 & 1u)) >> 16;
+    out[i] = (uint16_t)(x[i] != x[i] ? 0x7fc0u : rounded);
+  }
+}
+
 CLONES void vs_kernel_add(float *restrict a, const float *restrict b, size_t count) {
   for (size_t i = 0; i < count; i++) a[i] += b[i];
 }

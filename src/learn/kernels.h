@@ -4,6 +4,7 @@
 #define VSSS_LEARN_KERNELS_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 // All matrices are row-major floats; stride: floats from one row to the next.
 
@@ -24,6 +25,9 @@ void vs_kernel_head_backward(const float *x, float *d, size_t stride, size_t row
 
 // out[column] += sum over rows.
 void vs_kernel_column_sums(const float *x, size_t rows, size_t columns, float *out);
+
+// x rounded to the nearest bfloat16 (the upper half of a float), ties to even; NaN stays NaN.
+void vs_kernel_round(const float *x, size_t count, uint16_t *out);
 
 // a += b.
 void vs_kernel_add(float *a, const float *b, size_t count);

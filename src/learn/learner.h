@@ -10,6 +10,9 @@
 #include "ppo.h"
 #include "vsss/rng.h"
 
+// What the products of the hidden layers are of. AUTO: bfloat16 where the processor has it and our kernels learn.
+typedef enum vs_precision { VS_PRECISION_FP32, VS_PRECISION_BF16, VS_PRECISION_AUTO } vs_precision;
+
 typedef struct vs_learner_def {
   vs_net_shape shape; // with a critic
   vs_ppo_def ppo;
@@ -17,6 +20,7 @@ typedef struct vs_learner_def {
   double first_shape; // alpha = beta of the untrained policy
   int epochs, minibatch;
   int pieces; // a minibatch is computed in this many parts, whatever the number of threads
+  vs_precision precision;
 } vs_learner_def;
 
 // One batch: the transitions of this rank. Arrays as in vs_ppo_batch, in any order; advantage not normalised.
@@ -47,6 +51,7 @@ typedef struct vs_learner {
   const vs_gradient_engine *engine;  // borrowed; NULL: our kernels
   float *parameters, *mean, *square; // [net.size], one block; what a checkpoint keeps, with steps
   long long steps;                   // of Adam
+  uint16_t *half;                    // [net.size]: parameters as vs_learner_round left them; NULL: products of floats
   struct vs_learner_part *part;      // [pieces]: workspaces
   float *gradient;                   // [net.size]
   int *order;                        // permutation of the batch
@@ -55,6 +60,9 @@ typedef struct vs_learner {
 
 vs_status vs_learner_init(vs_learner *learner, const vs_learner_def *def, vs_pool *pool, uint64_t seed, vs_error *err);
 void vs_learner_free(vs_learner *learner);
+
+// The parameters into half, where there is one: to be called before networks with it run on parameters that changed.
+void vs_learner_round(vs_learner *learner);
 
 // epochs over the batch in random minibatches drawn from seed. With a group, the batch is the ranks' batches together
 // (all of the same number of rows) and the update is that of one rank that held them all.

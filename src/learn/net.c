@@ -108,28 +108,47 @@ void vs_net_extract_actor(const vs_net *net, const float *parameters, const vs_n
   memcpy(out + actor->head_bias[0], parameters + net->head_bias[VS_ACTOR], 2 * (size_t)s->actions * sizeof *out);
 }
 
-static size_t round_up(size_t floats) { return (floats + 15) / 16 * 16; } // 64-byte lines
+// Hands out parts of one block, each beginning on a cache line; with base NULL it only counts.
+typedef struct arena {
+  float *base;
+  size_t used; // floats
+} arena;
 
-vs_status vs_net_work_init(vs_net_work *work, const vs_net *net, int rows, bool backward, vs_error *err) {
+static float *floats(arena *a, size_t count) {
+  float *out = a->base ? a->base + a->used : NULL;
+  a->used += (count + 15) / 16 * 16;
+  return out;
+}
+
+static uint16_t *halves(arena *a, size_t count) { return (uint16_t *)floats(a, (count + 1) / 2); }
+
+static void lay_out(vs_net_work *work, const vs_net *net, bool backward, arena *a) {
   const vs_net_shape *s = &net->shape;
-  *work = (vs_net_work){.rows = rows};
-  size_t total = 0, n = (size_t)rows;
-  for (int l = 0; l < s->layers; l++) total += round_up(n * (size_t)(net->nets * s->width[l])) * (backward ? 2 : 1);
-  total += round_up(n * 2 * (size_t)s->actions) + round_up(n);
-  work->block = aligned_alloc(64, total * sizeof *work->block);
-  if (!work->block) return vs_fail(err, VS_FAIL, "out of memory for the activations of %d rows", rows);
-  memset(work->block, 0, total * sizeof *work->block);
-  float *at = work->block;
+  size_t rows = (size_t)work->rows;
   for (int l = 0; l < s->layers; l++) {
-    size_t size = round_up(n * (size_t)(net->nets * s->width[l]));
-    work->hidden[l] = at;
-    at += size;
-    if (!backward) continue;
-    work->gradient[l] = at;
-    at += size;
+    size_t size = rows * (size_t)(net->nets * s->width[l]);
+    work->hidden[l] = floats(a, size);
+    if (backward) work->gradient[l] = floats(a, size);
+    if (!work->half) continue;
+    work->half_hidden[l] = halves(a, size);
+    if (backward) work->half_gradient[l] = halves(a, size);
   }
-  work->raw = at;
-  work->value = at + round_up(n * 2 * (size_t)s->actions);
+  if (work->half) work->half_x = halves(a, rows * (size_t)s->inputs);
+  work->raw = floats(a, rows * 2 * (size_t)s->actions);
+  work->value = floats(a, rows);
+}
+
+vs_status vs_net_work_init(vs_net_work *work, const vs_net *net, int rows, bool backward, const uint16_t *half,
+                           vs_error *err) {
+  *work = (vs_net_work){.rows = rows, .half = half};
+  arena a = {0};
+  lay_out(work, net, backward, &a);
+  size_t size = a.used * sizeof *work->block;
+  work->block = aligned_alloc(64, size);
+  if (!work->block) return vs_fail(err, VS_FAIL, "out of memory for the activations of %d rows", rows);
+  memset(work->block, 0, size);
+  a = (arena){.base = work->block};
+  lay_out(work, net, backward, &a);
   return VS_OK;
 }
 
@@ -138,31 +157,52 @@ void vs_net_work_free(vs_net_work *work) {
   *work = (vs_net_work){0};
 }
 
+// A matrix, or a part of one, in the one form or the other.
+typedef struct operand {
+  const float *full;
+  const uint16_t *half; // NULL: full counts
+} operand;
+
+static operand part_of(const float *full, const uint16_t *half, size_t offset) {
+  return half ? (operand){NULL, half + offset} : (operand){full + offset, NULL};
+}
+
+static void multiply(const vs_blas *blas, bool transpose_a, bool transpose_b, int m, int n, int k, operand a, int lda,
+                     operand b, int ldb, bool accumulate, float *c, int ldc) {
+  if (a.half)
+    vs_blas_multiply_half(blas, transpose_a, transpose_b, m, n, k, a.half, lda, b.half, ldb, accumulate, c, ldc);
+  else
+    vs_blas_multiply(blas, transpose_a, transpose_b, m, n, k, a.full, lda, b.full, ldb, accumulate, c, ldc);
+}
+
 void vs_net_forward(const vs_net *net, const vs_blas *blas, const float *parameters, const float *x, int rows,
                     vs_net_work *work) {
   const vs_net_shape *s = &net->shape;
-  const int nets = net->nets;
+  const int nets = net->nets, top = s->layers - 1;
+  if (work->half) vs_kernel_round(x, (size_t)rows * (size_t)s->inputs, work->half_x);
   for (int l = 0; l < s->layers; l++) {
     int width = s->width[l], all = nets * width;
     if (l == 0)
-      vs_blas_multiply(blas, false, false, rows, all, s->inputs, x, s->inputs, parameters + net->weight[0][0], all,
-                       false, work->hidden[0], all);
+      multiply(blas, false, false, rows, all, s->inputs, part_of(x, work->half_x, 0), s->inputs,
+               part_of(parameters, work->half, net->weight[0][0]), all, false, work->hidden[0], all);
     else
       for (int n = 0; n < nets; n++) {
         int before = s->width[l - 1];
-        vs_blas_multiply(blas, false, false, rows, width, before, work->hidden[l - 1] + n * before, nets * before,
-                         parameters + net->weight[l][n], width, false, work->hidden[l] + n * width, all);
+        multiply(blas, false, false, rows, width, before,
+                 part_of(work->hidden[l - 1], work->half_hidden[l - 1], (size_t)(n * before)), nets * before,
+                 part_of(parameters, work->half, net->weight[l][n]), width, false, work->hidden[l] + n * width, all);
       }
     vs_kernel_bias_tanh(work->hidden[l], (size_t)rows, (size_t)all, parameters + net->bias[l]);
+    if (work->half && l < top) vs_kernel_round(work->hidden[l], (size_t)rows * (size_t)all, work->half_hidden[l]);
   }
-  const int last = s->width[s->layers - 1], outputs = 2 * s->actions;
-  const float *top = work->hidden[s->layers - 1];
+  const int last = s->width[top], outputs = 2 * s->actions;
+  const float *hidden = work->hidden[top];
   for (int o = 0; o < outputs; o++)
-    vs_kernel_dot(top, (size_t)(nets * last), (size_t)rows, (size_t)last,
+    vs_kernel_dot(hidden, (size_t)(nets * last), (size_t)rows, (size_t)last,
                   parameters + net->head_weight[VS_ACTOR] + o * last, parameters[net->head_bias[VS_ACTOR] + (size_t)o],
                   work->raw + o, (size_t)outputs);
   if (s->critic)
-    vs_kernel_dot(top + last, (size_t)(nets * last), (size_t)rows, (size_t)last,
+    vs_kernel_dot(hidden + last, (size_t)(nets * last), (size_t)rows, (size_t)last,
                   parameters + net->head_weight[VS_CRITIC], parameters[net->head_bias[VS_CRITIC]], work->value, 1);
 }
 
@@ -186,17 +226,20 @@ void vs_net_backward(const vs_net *net, const vs_blas *blas, const float *parame
   for (int l = s->layers - 1; l >= 0; l--) {
     const int width = s->width[l], all = nets * width;
     vs_kernel_column_sums(work->gradient[l], (size_t)rows, (size_t)all, gradient + net->bias[l]);
+    if (work->half) vs_kernel_round(work->gradient[l], (size_t)rows * (size_t)all, work->half_gradient[l]);
     if (l == 0) {
-      vs_blas_multiply(blas, true, false, s->inputs, all, rows, x, s->inputs, work->gradient[0], all, true,
-                       gradient + net->weight[0][0], all);
+      multiply(blas, true, false, s->inputs, all, rows, part_of(x, work->half_x, 0), s->inputs,
+               part_of(work->gradient[0], work->half_gradient[0], 0), all, true, gradient + net->weight[0][0], all);
       continue;
     }
     const int before = s->width[l - 1], all_before = nets * before;
     for (int n = 0; n < nets; n++) {
-      vs_blas_multiply(blas, true, false, before, width, rows, work->hidden[l - 1] + n * before, all_before,
-                       work->gradient[l] + n * width, all, true, gradient + net->weight[l][n], width);
-      vs_blas_multiply(blas, false, true, rows, before, width, work->gradient[l] + n * width, all,
-                       parameters + net->weight[l][n], width, false, work->gradient[l - 1] + n * before, all_before);
+      const operand above = part_of(work->gradient[l], work->half_gradient[l], (size_t)(n * width));
+      multiply(blas, true, false, before, width, rows,
+               part_of(work->hidden[l - 1], work->half_hidden[l - 1], (size_t)(n * before)), all_before, above, all,
+               true, gradient + net->weight[l][n], width);
+      multiply(blas, false, true, rows, before, width, above, all, part_of(parameters, work->half, net->weight[l][n]),
+               width, false, work->gradient[l - 1] + n * before, all_before);
     }
     vs_kernel_tanh_backward(work->gradient[l - 1], work->hidden[l - 1], (size_t)rows * (size_t)all_before);
   }

@@ -44,17 +44,21 @@ vs_status vs_net_randomise(const vs_net *net, double first_shape, vs_rng *rng, f
 // The actor's part of parameters of `net` as parameters of `actor` (made with the same shape, critic = false).
 void vs_net_extract_actor(const vs_net *net, const float *parameters, const vs_net *actor, float *out);
 
-// Room for the activations of up to `rows` rows; one per thread.
+// Room for the activations of up to `rows` rows; one per thread. With `half` the products of the hidden layers are of
+// bfloat16 numbers (8 bits of mantissa), added up in float; all else stays float.
 typedef struct vs_net_work {
   int rows;
-  float *hidden[VS_NET_MAX_LAYERS];   // [rows][N * width]
+  const uint16_t *half; // borrowed: the parameters rounded to bfloat16 by the owner; NULL: products of floats
+  uint16_t *half_x, *half_hidden[VS_NET_MAX_LAYERS], *half_gradient[VS_NET_MAX_LAYERS]; // with half: rounded
+  float *hidden[VS_NET_MAX_LAYERS];                                                     // [rows][N * width]
   float *gradient[VS_NET_MAX_LAYERS]; // the same; NULL where made without backward
   float *raw;                         // [rows][2 * actions]
   float *value;                       // [rows]; zeros without a critic
-  float *block;                       // owns all of the above
+  float *block;                       // owns all of the above but half
 } vs_net_work;
 
-vs_status vs_net_work_init(vs_net_work *work, const vs_net *net, int rows, bool backward, vs_error *err);
+vs_status vs_net_work_init(vs_net_work *work, const vs_net *net, int rows, bool backward, const uint16_t *half,
+                           vs_error *err);
 void vs_net_work_free(vs_net_work *work);
 
 // x float[rows][inputs] -> work->raw, work->value. rows <= work->rows.

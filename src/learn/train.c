@@ -32,6 +32,9 @@ static vs_status make_learner(vs_train *t, vs_error *err) {
   vs_status s = vs_train_hidden(&t->def, &shape, err);
   if (s != VS_OK) return s;
   vs_learner_def def = learner_def(&t->def, &shape);
+  s = vs_train_precision(&t->def, &def.precision, err);
+  if (s != VS_OK) return s;
+  if (!strcmp(t->def.learner, "torch")) def.precision = VS_PRECISION_FP32;
   s = vs_pool_new(t->def.threads, &t->pool, err);
   if (s == VS_OK) s = vs_learner_init(&t->learner, &def, t->pool, (uint64_t)t->def.seed, err);
   if (s != VS_OK) return s;
@@ -110,6 +113,7 @@ vs_status vs_train_collect(vs_train *t, const vs_reward_weights *weights, double
                            vs_error *err) {
   const float *parameters = t->learner.parameters;
   vs_rollout_begin(&t->rollout);
+  vs_learner_round(&t->learner);
   for (int step = 0; step < t->def.steps; step++) {
     double start = seconds();
     vs_rollout_act(&t->rollout, step, parameters, &t->scale);
@@ -236,6 +240,13 @@ bool vs_train_done(const vs_train *train) {
 double vs_train_updates(const vs_train *train) { return (double)train->updates; }
 
 double vs_train_transitions(const vs_train *train) { return (double)train->transitions; }
+
+const char *vs_train_products(const vs_train *train) {
+  const vs_learner *l = &train->learner;
+  if (l->engine) return "libtorch";
+  bool onednn = l->blas.dnnl_sgemm != NULL;
+  return l->half ? "bf16 products by oneDNN" : onednn ? "fp32 products by oneDNN" : "fp32 products by OpenBLAS";
+}
 
 const vs_train_def *vs_train_settings(const vs_train *train) { return &train->def; }
 

@@ -45,6 +45,7 @@ vs_train_def vs_train_def_default(void) {
       .hidden = "256,256",
       .first_shape = 4.0,
       .learner = "own",
+      .precision = "auto",
       .transitions_m = 60.0,
   };
 }
@@ -127,6 +128,7 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       TEXT(hidden, "layer sizes of both networks"),
       REAL(first_shape, 1.01, 100, "alpha = beta of the untrained policy"),
       TEXT(learner, "own (kernels over BLAS) or torch"),
+      TEXT(precision, "own learner's products: fp32, bf16, or auto (bf16 where the processor has it)"),
       REAL(transitions_m, 0, 1e9, "millions of transitions to stop at; 0: until stopped"),
       {.name = NULL},
   };
@@ -185,6 +187,17 @@ vs_status vs_train_hidden(const vs_train_def *def, vs_net_shape *shape, vs_error
   return VS_OK;
 }
 
+vs_status vs_train_precision(const vs_train_def *def, vs_precision *out, vs_error *err) {
+  static const char *const names[] = {
+      [VS_PRECISION_FP32] = "fp32", [VS_PRECISION_BF16] = "bf16", [VS_PRECISION_AUTO] = "auto"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (!strcmp(def->precision, names[i])) {
+      *out = (vs_precision)i;
+      return VS_OK;
+    }
+  return vs_fail(err, VS_USAGE, "precision = %s: expected fp32, bf16 or auto", def->precision);
+}
+
 vs_status vs_train_def_check(const vs_train_def *def, vs_error *err) {
   vs_drive drive;
   vs_placement_mode placement;
@@ -200,6 +213,11 @@ vs_status vs_train_def_check(const vs_train_def *def, vs_error *err) {
   if (s != VS_OK) return s;
   if (strcmp(def->learner, "own") != 0 && strcmp(def->learner, "torch") != 0)
     return vs_fail(err, VS_USAGE, "learner = %s: expected own or torch", def->learner);
+  vs_precision precision;
+  s = vs_train_precision(def, &precision, err);
+  if (s != VS_OK) return s;
+  if (precision == VS_PRECISION_BF16 && !strcmp(def->learner, "torch"))
+    return vs_fail(err, VS_USAGE, "precision = bf16: is for learner = own; torch computes in fp32");
   if (def->anneal_to_m < def->anneal_from_m)
     return vs_fail(err, VS_USAGE, "anneal_to_m = %g: must not be below anneal_from_m = %g", def->anneal_to_m,
                    def->anneal_from_m);

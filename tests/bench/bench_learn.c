@@ -57,7 +57,7 @@ static double bare_products(const vs_blas *blas) {
 }
 
 // The learner alone, one thread: transitions per second at five epochs.
-static vs_status bench_learner(vs_error *err) {
+static vs_status bench_learner(vs_precision precision, const char *name, vs_error *err) {
   const vs_learner_def def = {.shape = {VS_OBS_SIZE, 2, {256, 256}, VS_ACTION_SIZE, true},
                               .ppo = {.clip = 0.2, .clip_value = true, .entropy = 0.01, .value_weight = 0.5},
                               .learning_rate = 4e-4,
@@ -68,7 +68,8 @@ static vs_status bench_learner(vs_error *err) {
                               .first_shape = 4.0,
                               .epochs = 5,
                               .minibatch = 4280,
-                              .pieces = 4};
+                              .pieces = 4,
+                              .precision = precision};
   vs_pool *pool;
   vs_learner learner;
   vs_status s = vs_pool_new(1, &pool, err);
@@ -85,7 +86,7 @@ static vs_status bench_learner(vs_error *err) {
     s = vs_learner_update(&learner, &batch, (uint64_t)i, &stats, err);
     rate[i] = LEARNER_ROWS / (processor_s() - start);
   }
-  printf("bench learner_transitions_per_s_1_core %.0f transitions/s\n", median(rate, UPDATES));
+  printf("bench %s_transitions_per_s_1_core %.0f transitions/s\n", name, median(rate, UPDATES));
   vs_learner_free(&learner);
   vs_pool_free(pool);
   free(x), free(logs), free(zeros), free(noise);
@@ -147,7 +148,11 @@ static vs_status bench_training(vs_error *err) {
 
 int main(void) {
   vs_error err = {0};
-  if (bench_training(&err) == VS_OK && bench_learner(&err) == VS_OK && bench_products(&err) == VS_OK) return 0;
+  vs_status s = bench_training(&err);
+  if (s == VS_OK) s = bench_learner(VS_PRECISION_AUTO, "learner", &err); // bf16 where the processor has it
+  if (s == VS_OK) s = bench_learner(VS_PRECISION_FP32, "learner_fp32", &err);
+  if (s == VS_OK) s = bench_products(&err);
+  if (s == VS_OK) return 0;
   fprintf(stderr, "bench_learn: %s\n", err.text);
   return 1;
 }

@@ -68,6 +68,7 @@ compare() { # label, our value, their value, unit
 planar=$(our env_planar_per_core)
 contact=$(our env_contact_per_core)
 learner=$(our learner_transitions_per_s_1_core)
+learner_fp32=$(our learner_fp32_transitions_per_s_1_core)
 whole=$(our train_transitions_per_s_1_core)
 
 rsim=$(run rsim bench_rsim_raw.py sim_s_per_wall_s --seconds 8)
@@ -84,6 +85,8 @@ compare planar/rsoccer_environment "$planar" "$rsoccer" "simulated s/s"
 compare planar/psim_raw_2d "$planar" "$psim" "simulated s/s"
 compare planar/psim_environment "$planar" "$psim_zoo" "simulated s/s"
 compare planar/envpool_soccer "$planar" "$envpool" "simulated s/s"
-compare learner/torch_learner "$learner" "$(run sb3 bench_torch_ppo_learner.py transitions_per_s_at_epochs)" "transitions/s per core"
+torch=$(run sb3 bench_torch_ppo_learner.py transitions_per_s_at_epochs)
+compare learner_fp32/torch_learner "$learner_fp32" "$torch" "transitions/s per core"
+compare learner/torch_learner "$learner" "$torch" "transitions/s per core; bf16 where the processor has it"
 compare train/envpool_soccer_torch_ppo "$whole" "$(run envpool bench_envpool_soccer_ppo.py transitions_per_s --seconds 30)" "transitions/s per core"
 compare train/sb3_rsoccer "$whole" "$(run sb3 bench_sb3_rsoccer.py transitions_per_s --seconds 30)" "transitions/s per core"

@@ -141,6 +141,8 @@ static void wrong_settings_are_refused_with_the_allowed_range(void **state) {
   assert_refused("train --set reward=dense,fame=1", 2, "own_distance");
   assert_refused("train --opponent nobody", 2, "opponent 'nobody'");
   assert_refused("train --learner brain", 2, "own or torch");
+  assert_refused("train --set precision=fp16", 2, "expected fp32, bf16 or auto");
+  assert_refused("train --set precision=bf16 --learner torch", 2, "torch computes in fp32");
   assert_refused("train --resume /nowhere", 1, "/nowhere/checkpoint");
   assert_refused("train --run /proc/none", 1, "/proc/none");
   assert_refused("plot", 2, "name one run's folder");

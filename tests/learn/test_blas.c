@@ -3,6 +3,7 @@
 
 #include "assert_near.h"
 #include "learn/blas.h"
+#include "learn/kernels.h"
 #include "vsss/rng.h"
 
 enum { M = 37, N = 21, K = 53, PAD = 3 }; // no multiples of a vector's width; rows lie further apart than they are long
@@ -42,6 +43,35 @@ static void both_libraries_multiply_and_add_to_what_was_there(void **state) {
   check_all(&blas);
 }
 
+// Products of whole numbers below 256, which bfloat16 holds exactly, and their sums, which float does.
+static void products_of_bfloat16_numbers_are_added_up_in_float(void **state) {
+  (void)state;
+  vs_blas blas;
+  assert_ok(vs_blas_open(&blas, VS_BLAS_ONEDNN, err));
+  if (!vs_blas_has_half(&blas)) {
+    print_message("no bfloat16 on this processor: nothing to multiply\n");
+    skip();
+  }
+  static uint16_t a[M * K], b[K * N];
+  static float fa[M * K], fb[K * N], c[M * N];
+  for (int i = 0; i < M * K; i++) fa[i] = (float)(i * 7 % 201 - 100);
+  for (int i = 0; i < K * N; i++) fb[i] = (float)(i * 11 % 199 - 99);
+  vs_kernel_round(fa, M * K, a);
+  vs_kernel_round(fb, K * N, b);
+  for (int kind = 0; kind < 8; kind++) {
+    bool ta = kind & 1, tb = kind & 2, add = kind & 4;
+    for (int i = 0; i < M * N; i++) c[i] = 3.0f;
+    vs_blas_multiply_half(&blas, ta, tb, M, N, K, a, ta ? M : K, b, tb ? K : N, add, c, N);
+    for (int i = 0; i < M; i++)
+      for (int j = 0; j < N; j++) {
+        double sum = add ? 3.0 : 0.0;
+        for (int k = 0; k < K; k++)
+          sum += (double)(ta ? fa[k * M + i] : fa[i * K + k]) * (tb ? fb[j * K + k] : fb[k * N + j]);
+        assert_near(c[i * N + j], sum, 0.0);
+      }
+  }
+}
+
 static void onednn_is_the_first_choice_and_leaves_openmp_as_it_was(void **state) {
   (void)state;
   vs_blas blas;
@@ -54,6 +84,7 @@ static void onednn_is_the_first_choice_and_leaves_openmp_as_it_was(void **state)
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(both_libraries_multiply_and_add_to_what_was_there),
+                                     cmocka_unit_test(products_of_bfloat16_numbers_are_added_up_in_float),
                                      cmocka_unit_test(onednn_is_the_first_choice_and_leaves_openmp_as_it_was)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

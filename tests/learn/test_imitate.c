@@ -25,7 +25,7 @@ static vs_train *open_tiny(void) {
 static void mean_action(vs_train *train, float s, double action[2]) {
   float x[VS_OBS_SIZE] = {s, 1.0f};
   vs_net_work work;
-  assert_ok(vs_net_work_init(&work, &train->learner.net, 1, false, err));
+  assert_ok(vs_net_work_init(&work, &train->learner.net, 1, false, NULL, err));
   vs_net_forward(&train->learner.net, &train->learner.blas, train->learner.parameters, x, 1, &work);
   for (int k = 0; k < 2; k++) {
     double alpha = 1.0 + vs_softplus(work.raw[k]), beta = 1.0 + vs_softplus(work.raw[2 + k]);

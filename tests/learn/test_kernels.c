@@ -1,5 +1,7 @@
 // Tests src/learn/kernels.c
+#include <float.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "assert_near.h"
 #include "learn/kernels.h"
@@ -55,6 +57,31 @@ static void adam_takes_its_first_step_as_the_paper_says(void **state) {
   assert_near(parameter, 2.95, 1e-6);
 }
 
+// bfloat16 keeps the upper 16 bits of a float: 1 = 0x3f800000; its next is 1 + 2^-7, half way there is a tie.
+static void rounding_goes_to_the_nearest_and_ties_to_even(void **state) {
+  (void)state;
+  const float step = 0x1p-7f, x[] = {1.0f,
+                                     1.0f + 0.49f * step,
+                                     1.0f + 0.5f * step,
+                                     1.0f + 0.51f * step,
+                                     1.0f + 1.5f * step,
+                                     -1.0f - 0.51f * step,
+                                     0.0f,
+                                     INFINITY,
+                                     -INFINITY,
+                                     FLT_MAX};
+  const uint16_t expected[] = {0x3f80, 0x3f80, 0x3f80, 0x3f81, 0x3f82, 0xbf81, 0, 0x7f80, 0xff80, 0x7f80};
+  enum { N = sizeof x / sizeof *x };
+  uint16_t out[N];
+  vs_kernel_round(x, N, out);
+  for (int i = 0; i < N; i++) assert_int_equal(out[i], expected[i]);
+  const uint32_t nans[] = {0x7fffffff, 0xffffffff, 0x7f800001}; // adding to these carries into nonsense
+  float broken[3];
+  memcpy(broken, nans, sizeof broken);
+  vs_kernel_round(broken, 3, out);
+  for (int i = 0; i < 3; i++) assert_true((out[i] & 0x7f80) == 0x7f80 && (out[i] & 0x7f) != 0);
+}
+
 static void sums_run_over_rows(void **state) {
   (void)state;
   const float x[6] = {1, 2, 3, 10, 20, 30};
@@ -75,6 +102,7 @@ int main(void) {
       cmocka_unit_test(tanh_is_within_3e7_of_the_libm_everywhere),
       cmocka_unit_test(the_backward_of_a_head_agrees_with_hand_values),
       cmocka_unit_test(adam_takes_its_first_step_as_the_paper_says),
+      cmocka_unit_test(rounding_goes_to_the_nearest_and_ties_to_even),
       cmocka_unit_test(sums_run_over_rows),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

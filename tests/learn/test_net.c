@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "assert_near.h"
+#include "learn/kernels.h"
 #include "learn/net.h"
 
 enum { ROWS = 7, INPUTS = 6 };
@@ -18,7 +19,7 @@ typedef struct fixture {
 static void set_up(fixture *f) {
   assert_ok(vs_blas_open(&f->blas, VS_BLAS_ANY, err));
   assert_ok(vs_net_init(&f->net, &small, err));
-  assert_ok(vs_net_work_init(&f->work, &f->net, ROWS, true, err));
+  assert_ok(vs_net_work_init(&f->work, &f->net, ROWS, true, NULL, err));
   f->parameters = malloc(f->net.size * sizeof *f->parameters);
   vs_rng rng = vs_rng_make(2, 0);
   for (size_t i = 0; i < f->net.size; i++) f->parameters[i] = (float)vs_rng_range(&rng, -0.8, 0.8);
@@ -103,6 +104,44 @@ static void every_gradient_agrees_with_finite_differences(void **state) {
   tear_down(&f);
 }
 
+// bfloat16 has 8 bits of mantissa: each factor is off by at most 2^-9 of itself.
+static void bfloat16_products_change_outputs_and_gradients_by_a_percent_at_most(void **state) {
+  (void)state;
+  fixture f;
+  set_up(&f);
+  if (!vs_blas_has_half(&f.blas)) {
+    print_message("no bfloat16 on this processor: nothing to compare\n");
+    tear_down(&f);
+    skip();
+  }
+  uint16_t *half = malloc(f.net.size * sizeof *half);
+  float *gradient = calloc(2 * f.net.size, sizeof *gradient), *rounded = gradient + f.net.size;
+  vs_net_work work;
+  assert_ok(vs_net_work_init(&work, &f.net, ROWS, true, half, err));
+  vs_kernel_round(f.parameters, f.net.size, half);
+  vs_net_forward(&f.net, &f.blas, f.parameters, f.x, ROWS, &f.work);
+  vs_net_forward(&f.net, &f.blas, f.parameters, f.x, ROWS, &work);
+  double most = 0.0;
+  for (int i = 0; i < ROWS * 4; i++) {
+    assert_near(work.raw[i], f.work.raw[i], 0.02);
+    most = fmax(most, fabs((double)work.raw[i] - f.work.raw[i]));
+  }
+  assert_true(most > 1e-5); // they were not products of floats
+  for (int i = 0; i < ROWS; i++) assert_near(work.value[i], f.work.value[i], 0.02);
+  vs_net_backward(&f.net, &f.blas, f.parameters, f.x, ROWS, f.draw, f.dvalue, &f.work, gradient);
+  vs_net_backward(&f.net, &f.blas, f.parameters, f.x, ROWS, f.draw, f.dvalue, &work, rounded);
+  double off = 0.0, length = 0.0;
+  for (size_t i = 0; i < f.net.size; i++) {
+    off += pow((double)rounded[i] - gradient[i], 2.0);
+    length += pow(gradient[i], 2.0);
+  }
+  assert_true(sqrt(off / length) < 0.01);
+  vs_net_work_free(&work);
+  free(gradient);
+  free(half);
+  tear_down(&f);
+}
+
 static void an_extracted_actor_says_the_same(void **state) {
   (void)state;
   fixture f;
@@ -114,7 +153,7 @@ static void an_extracted_actor_says_the_same(void **state) {
   assert_true(actor.size < f.net.size);
   float *own = malloc(actor.size * sizeof *own);
   vs_net_work work;
-  assert_ok(vs_net_work_init(&work, &actor, ROWS, false, err));
+  assert_ok(vs_net_work_init(&work, &actor, ROWS, false, NULL, err));
   vs_net_extract_actor(&f.net, f.parameters, &actor, own);
   vs_net_forward(&actor, &f.blas, own, f.x, ROWS, &work);
   vs_net_forward(&f.net, &f.blas, f.parameters, f.x, ROWS, &f.work);
@@ -164,6 +203,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_forward_pass_agrees_with_a_plain_network),
       cmocka_unit_test(every_gradient_agrees_with_finite_differences),
+      cmocka_unit_test(bfloat16_products_change_outputs_and_gradients_by_a_percent_at_most),
       cmocka_unit_test(an_extracted_actor_says_the_same),
       cmocka_unit_test(a_fresh_network_is_orthogonal_and_starts_at_the_asked_shape),
       cmocka_unit_test(shapes_out_of_range_are_refused_with_the_range),

@@ -45,7 +45,7 @@ static void the_critic_says_the_same_after_a_change_of_scale(void **state) {
   float x[VS_OBS_SIZE] = {0.7f, -0.3f};
   vs_net_work work;
   const vs_value_scale from = {.mean = 0.5, .deviation = 2.0}, to = {.mean = -3.0, .deviation = 0.25};
-  assert_ok(vs_net_work_init(&work, &t->learner.net, 1, false, err));
+  assert_ok(vs_net_work_init(&work, &t->learner.net, 1, false, NULL, err));
   vs_net_forward(&t->learner.net, &t->learner.blas, t->learner.parameters, x, 1, &work);
   double before = work.value[0] * from.deviation + from.mean;
   vs_value_scale_fit(&from, &to, &t->learner.net, t->learner.parameters);

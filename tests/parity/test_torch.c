@@ -73,7 +73,7 @@ static void our_networks_agree_with_torch_on_1000_observations(void **state) {
   vs_net_work work;
   make_net(&net, &parameters);
   assert_ok(vs_blas_open(&blas, VS_BLAS_ANY, err));
-  assert_ok(vs_net_work_init(&work, &net, OBSERVATIONS, false, err));
+  assert_ok(vs_net_work_init(&work, &net, OBSERVATIONS, false, NULL, err));
   static float x[OBSERVATIONS * VS_OBS_SIZE], raw[OBSERVATIONS * 4], value[OBSERVATIONS];
   random_floats(x, OBSERVATIONS * VS_OBS_SIZE, -1.0, 1.0, 4);
   assert_ok(torch.forward(torch.self, &net, parameters, x, OBSERVATIONS, raw, value, err));
