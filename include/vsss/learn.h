@@ -42,8 +42,10 @@ typedef struct vs_train_def {
   int epochs, minibatch, pieces;
   char hidden[64]; // layer sizes, such as "256,256"
   double first_shape;
-  char learner[16];   // own or torch
-  char precision[16]; // of the own learner's products: fp32, bf16 or auto
+  char learner[16]; // own or torch
+  // Of the own learner's products: fp32, bf16 (needs AVX512-BF16), or auto (bf16 where the processor has it; ranks on
+  // machines of several kinds set one).
+  char precision[16];
   // How long.
   double transitions_m; // millions; 0: until stopped
 } vs_train_def;

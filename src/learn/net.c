@@ -110,32 +110,30 @@ void vs_net_extract_actor(const vs_net *net, const float *parameters, const vs_n
 
 // Hands out parts of one block, each beginning on a cache line; with base NULL it only counts.
 typedef struct arena {
-  float *base;
-  size_t used; // floats
+  unsigned char *base;
+  size_t used; // bytes
 } arena;
 
-static float *floats(arena *a, size_t count) {
-  float *out = a->base ? a->base + a->used : NULL;
-  a->used += (count + 15) / 16 * 16;
+static void *room(arena *a, size_t count, size_t size) {
+  void *out = a->base ? a->base + a->used : NULL;
+  a->used += (count * size + 63) / 64 * 64;
   return out;
 }
-
-static uint16_t *halves(arena *a, size_t count) { return (uint16_t *)floats(a, (count + 1) / 2); }
 
 static void lay_out(vs_net_work *work, const vs_net *net, bool backward, arena *a) {
   const vs_net_shape *s = &net->shape;
   size_t rows = (size_t)work->rows;
   for (int l = 0; l < s->layers; l++) {
     size_t size = rows * (size_t)(net->nets * s->width[l]);
-    work->hidden[l] = floats(a, size);
-    if (backward) work->gradient[l] = floats(a, size);
+    work->hidden[l] = room(a, size, sizeof(float));
+    if (backward) work->gradient[l] = room(a, size, sizeof(float));
     if (!work->half) continue;
-    work->half_hidden[l] = halves(a, size);
-    if (backward) work->half_gradient[l] = halves(a, size);
+    work->half_hidden[l] = room(a, size, sizeof(uint16_t));
+    if (backward) work->half_gradient[l] = room(a, size, sizeof(uint16_t));
   }
-  if (work->half) work->half_x = halves(a, rows * (size_t)s->inputs);
-  work->raw = floats(a, rows * 2 * (size_t)s->actions);
-  work->value = floats(a, rows);
+  if (work->half) work->half_x = room(a, rows * (size_t)s->inputs, sizeof(uint16_t));
+  work->raw = room(a, rows * 2 * (size_t)s->actions, sizeof(float));
+  work->value = room(a, rows, sizeof(float));
 }
 
 vs_status vs_net_work_init(vs_net_work *work, const vs_net *net, int rows, bool backward, const uint16_t *half,
@@ -143,10 +141,9 @@ vs_status vs_net_work_init(vs_net_work *work, const vs_net *net, int rows, bool 
   *work = (vs_net_work){.rows = rows, .half = half};
   arena a = {0};
   lay_out(work, net, backward, &a);
-  size_t size = a.used * sizeof *work->block;
-  work->block = aligned_alloc(64, size);
+  work->block = aligned_alloc(64, a.used);
   if (!work->block) return vs_fail(err, VS_FAIL, "out of memory for the activations of %d rows", rows);
-  memset(work->block, 0, size);
+  memset(work->block, 0, a.used);
   a = (arena){.base = work->block};
   lay_out(work, net, backward, &a);
   return VS_OK;

@@ -54,7 +54,7 @@ typedef struct vs_net_work {
   float *gradient[VS_NET_MAX_LAYERS]; // the same; NULL where made without backward
   float *raw;                         // [rows][2 * actions]
   float *value;                       // [rows]; zeros without a critic
-  float *block;                       // owns all of the above but half
+  void *block;                        // owns all of the above but half
 } vs_net_work;
 
 vs_status vs_net_work_init(vs_net_work *work, const vs_net *net, int rows, bool backward, const uint16_t *half,
