@@ -164,10 +164,6 @@ static void round_range(void *context, int range, int thread) {
   vs_kernel_round(l->parameters + from, count, l->half + from);
 }
 
-void vs_learner_round(vs_learner *learner) {
-  if (learner->half) vs_pool_run(learner->pool, RANGES, round_range, learner);
-}
-
 static void add_stats(vs_ppo_stats *sum, const vs_ppo_stats *part) {
   sum->rows += part->rows;
   sum->policy_loss += part->policy_loss;
@@ -201,7 +197,7 @@ vs_status vs_learner_gradient(vs_learner *learner, const vs_ppo_batch *batch, co
     vs_status s = engine_gradient(&j, stats, err);
     if (s != VS_OK) return s;
   } else {
-    vs_learner_round(learner);
+    if (learner->half) vs_pool_run(learner->pool, RANGES, round_range, learner);
     vs_pool_run(learner->pool, learner->def.pieces, gradient_piece, &j);
     for (int i = 0; i < learner->def.pieces; i++) add_stats(stats, &learner->part[i].stats);
     vs_pool_run(learner->pool, RANGES, sum_range, learner);

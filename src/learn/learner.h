@@ -10,7 +10,7 @@
 #include "ppo.h"
 #include "vsss/rng.h"
 
-// What the products of the hidden layers are of. AUTO: bfloat16 where the processor has it and our kernels learn.
+// What the products of the backward pass are of. AUTO: bfloat16 where the processor has it.
 typedef enum vs_precision { VS_PRECISION_FP32, VS_PRECISION_BF16, VS_PRECISION_AUTO } vs_precision;
 
 typedef struct vs_learner_def {
@@ -51,7 +51,7 @@ typedef struct vs_learner {
   const vs_gradient_engine *engine;  // borrowed; NULL: our kernels
   float *parameters, *mean, *square; // [net.size], one block; what a checkpoint keeps, with steps
   long long steps;                   // of Adam
-  uint16_t *half;                    // [net.size]: parameters as vs_learner_round left them; NULL: products of floats
+  uint16_t *half;                    // [net.size]: parameters rounded for the backward pass; NULL: products of floats
   struct vs_learner_part *part;      // [pieces]: workspaces
   float *gradient;                   // [net.size]
   int *order;                        // permutation of the batch
@@ -60,9 +60,6 @@ typedef struct vs_learner {
 
 vs_status vs_learner_init(vs_learner *learner, const vs_learner_def *def, vs_pool *pool, uint64_t seed, vs_error *err);
 void vs_learner_free(vs_learner *learner);
-
-// The parameters into half, where there is one: to be called before networks with it run on parameters that changed.
-void vs_learner_round(vs_learner *learner);
 
 // epochs over the batch in random minibatches drawn from seed. With a group, the batch is the ranks' batches together
 // (all of the same number of rows) and the update is that of one rank that held them all.

@@ -129,7 +129,7 @@ static void lay_out(vs_net_work *work, const vs_net *net, bool backward, arena *
     if (backward) work->gradient[l] = room(a, size, sizeof(float));
     if (!work->half) continue;
     work->half_hidden[l] = room(a, size, sizeof(uint16_t));
-    if (backward) work->half_gradient[l] = room(a, size, sizeof(uint16_t));
+    work->half_gradient[l] = room(a, size, sizeof(uint16_t));
   }
   if (work->half) work->half_x = room(a, rows * (size_t)s->inputs, sizeof(uint16_t));
   work->raw = room(a, rows * 2 * (size_t)s->actions, sizeof(float));
@@ -154,43 +154,22 @@ void vs_net_work_free(vs_net_work *work) {
   *work = (vs_net_work){0};
 }
 
-// A matrix, or a part of one, in the one form or the other.
-typedef struct operand {
-  const float *full;
-  const uint16_t *half; // NULL: full counts
-} operand;
-
-static operand part_of(const float *full, const uint16_t *half, size_t offset) {
-  return half ? (operand){NULL, half + offset} : (operand){full + offset, NULL};
-}
-
-static void multiply(const vs_blas *blas, bool transpose_a, bool transpose_b, int m, int n, int k, operand a, int lda,
-                     operand b, int ldb, bool accumulate, float *c, int ldc) {
-  if (a.half)
-    vs_blas_multiply_half(blas, transpose_a, transpose_b, m, n, k, a.half, lda, b.half, ldb, accumulate, c, ldc);
-  else
-    vs_blas_multiply(blas, transpose_a, transpose_b, m, n, k, a.full, lda, b.full, ldb, accumulate, c, ldc);
-}
-
 void vs_net_forward(const vs_net *net, const vs_blas *blas, const float *parameters, const float *x, int rows,
                     vs_net_work *work) {
   const vs_net_shape *s = &net->shape;
   const int nets = net->nets, top = s->layers - 1;
-  if (work->half) vs_kernel_round(x, (size_t)rows * (size_t)s->inputs, work->half_x);
-  for (int l = 0; l < s->layers; l++) {
+  for (int l = 0; l <= top; l++) {
     int width = s->width[l], all = nets * width;
     if (l == 0)
-      multiply(blas, false, false, rows, all, s->inputs, part_of(x, work->half_x, 0), s->inputs,
-               part_of(parameters, work->half, net->weight[0][0]), all, false, work->hidden[0], all);
+      vs_blas_multiply(blas, false, false, rows, all, s->inputs, x, s->inputs, parameters + net->weight[0][0], all,
+                       false, work->hidden[0], all);
     else
       for (int n = 0; n < nets; n++) {
         int before = s->width[l - 1];
-        multiply(blas, false, false, rows, width, before,
-                 part_of(work->hidden[l - 1], work->half_hidden[l - 1], (size_t)(n * before)), nets * before,
-                 part_of(parameters, work->half, net->weight[l][n]), width, false, work->hidden[l] + n * width, all);
+        vs_blas_multiply(blas, false, false, rows, width, before, work->hidden[l - 1] + n * before, nets * before,
+                         parameters + net->weight[l][n], width, false, work->hidden[l] + n * width, all);
       }
     vs_kernel_bias_tanh(work->hidden[l], (size_t)rows, (size_t)all, parameters + net->bias[l]);
-    if (work->half && l < top) vs_kernel_round(work->hidden[l], (size_t)rows * (size_t)all, work->half_hidden[l]);
   }
   const int last = s->width[top], outputs = 2 * s->actions;
   const float *hidden = work->hidden[top];
@@ -215,11 +194,38 @@ static void backward_heads(const vs_net *net, const float *parameters, int rows,
   }
 }
 
+// A matrix, or a part of one, in the one form or the other.
+typedef struct operand {
+  const float *full;
+  const uint16_t *half; // NULL: full counts
+} operand;
+
+static operand part_of(const float *full, const uint16_t *half, size_t offset) {
+  return half ? (operand){NULL, half + offset} : (operand){full + offset, NULL};
+}
+
+static void multiply(const vs_blas *blas, bool transpose_a, bool transpose_b, int m, int n, int k, operand a, int lda,
+                     operand b, int ldb, bool accumulate, float *c, int ldc) {
+  if (a.half)
+    vs_blas_multiply_half(blas, transpose_a, transpose_b, m, n, k, a.half, lda, b.half, ldb, accumulate, c, ldc);
+  else
+    vs_blas_multiply(blas, transpose_a, transpose_b, m, n, k, a.full, lda, b.full, ldb, accumulate, c, ldc);
+}
+
+// The backward pass's operands into bfloat16.
+static void round_inputs(const vs_net *net, const float *x, int rows, vs_net_work *work) {
+  const vs_net_shape *s = &net->shape;
+  vs_kernel_round(x, (size_t)rows * (size_t)s->inputs, work->half_x);
+  for (int l = 0; l < s->layers - 1; l++)
+    vs_kernel_round(work->hidden[l], (size_t)rows * (size_t)(net->nets * s->width[l]), work->half_hidden[l]);
+}
+
 void vs_net_backward(const vs_net *net, const vs_blas *blas, const float *parameters, const float *x, int rows,
                      const float *draw, const float *dvalue, vs_net_work *work, float *gradient) {
   const vs_net_shape *s = &net->shape;
   const int nets = net->nets;
   backward_heads(net, parameters, rows, draw, dvalue, work, gradient);
+  if (work->half) round_inputs(net, x, rows, work);
   for (int l = s->layers - 1; l >= 0; l--) {
     const int width = s->width[l], all = nets * width;
     vs_kernel_column_sums(work->gradient[l], (size_t)rows, (size_t)all, gradient + net->bias[l]);

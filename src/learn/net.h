@@ -44,12 +44,13 @@ vs_status vs_net_randomise(const vs_net *net, double first_shape, vs_rng *rng, f
 // The actor's part of parameters of `net` as parameters of `actor` (made with the same shape, critic = false).
 void vs_net_extract_actor(const vs_net *net, const float *parameters, const vs_net *actor, float *out);
 
-// Room for the activations of up to `rows` rows; one per thread. With `half` the products of the hidden layers are of
-// bfloat16 numbers (8 bits of mantissa), added up in float; all else stays float.
+// Room for the activations of up to `rows` rows; one per thread. With `half` the backward pass multiplies
+// bfloat16 numbers (8 bits of mantissa), added up in float. The forward pass never does: rounding what the robots see
+// (by 3 mm) costs a policy reward.
 typedef struct vs_net_work {
   int rows;
   const uint16_t *half; // borrowed: the parameters rounded to bfloat16 by the owner; NULL: products of floats
-  uint16_t *half_x, *half_hidden[VS_NET_MAX_LAYERS], *half_gradient[VS_NET_MAX_LAYERS]; // with half: rounded
+  uint16_t *half_x, *half_hidden[VS_NET_MAX_LAYERS], *half_gradient[VS_NET_MAX_LAYERS]; // of backward with half
   float *hidden[VS_NET_MAX_LAYERS];                                                     // [rows][N * width]
   float *gradient[VS_NET_MAX_LAYERS]; // the same; NULL where made without backward
   float *raw;                         // [rows][2 * actions]

@@ -84,7 +84,7 @@ static vs_status allocate_scratch(vs_rollout *r, vs_error *err) {
   s->job = zeroed((size_t)s->jobs_max, sizeof *s->job, &failed);
   if (failed) return vs_fail(err, VS_FAIL, "out of memory for %d matches", r->def.envs);
   for (int i = 0; i < s->threads; i++) {
-    vs_status status = vs_net_work_init(&s->joint[i], r->net, CHUNK, false, r->half, err);
+    vs_status status = vs_net_work_init(&s->joint[i], r->net, CHUNK, false, NULL, err);
     if (status == VS_OK) status = vs_net_work_init(&s->actor[i], &r->actor, CHUNK, false, NULL, err);
     if (status != VS_OK) return status;
   }
@@ -107,12 +107,8 @@ static bool list_learning_rows(vs_rollout *r) {
 
 vs_status vs_rollout_init(vs_rollout *rollout, const vs_rollout_def *def, const vs_learner *learner, vs_league *league,
                           vs_error *err) {
-  *rollout = (vs_rollout){.def = *def,
-                          .net = &learner->net,
-                          .half = learner->half,
-                          .blas = &learner->blas,
-                          .pool = learner->pool,
-                          .league = league};
+  *rollout =
+      (vs_rollout){.def = *def, .net = &learner->net, .blas = &learner->blas, .pool = learner->pool, .league = league};
   vs_net_shape shape = learner->net.shape;
   shape.critic = false;
   vs_status s = vs_net_init(&rollout->actor, &shape, err);

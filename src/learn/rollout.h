@@ -42,7 +42,6 @@ typedef struct vs_rollout_stats {
 typedef struct vs_rollout {
   vs_rollout_def def;
   const vs_net *net;    // borrowed, of the learner
-  const uint16_t *half; // borrowed, of the learner: may be NULL
   vs_net actor;         // of the frozen selves
   const vs_blas *blas;  // borrowed
   vs_pool *pool;        // borrowed
@@ -64,8 +63,7 @@ vs_status vs_rollout_init(vs_rollout *rollout, const vs_rollout_def *def, const 
 void vs_rollout_free(vs_rollout *rollout);
 
 void vs_rollout_begin(vs_rollout *rollout); // a new batch: forgets the sums
-// Step t: values and sampled actions of everybody who is no script, from io.observation into io.action. parameters: the
-// learner's, rounded by vs_learner_round since they changed.
+// Step t: values and sampled actions of everybody who is no script, from io.observation into io.action.
 void vs_rollout_act(vs_rollout *rollout, int t, const float *parameters, const vs_value_scale *scale);
 // After the matches stepped: rewards, ends, the league's results.
 void vs_rollout_record(vs_rollout *rollout, int t, const float *parameters, const vs_value_scale *scale,

@@ -113,7 +113,6 @@ vs_status vs_train_collect(vs_train *t, const vs_reward_weights *weights, double
                            vs_error *err) {
   const float *parameters = t->learner.parameters;
   vs_rollout_begin(&t->rollout);
-  vs_learner_round(&t->learner);
   for (int step = 0; step < t->def.steps; step++) {
     double start = seconds();
     vs_rollout_act(&t->rollout, step, parameters, &t->scale);
@@ -245,7 +244,9 @@ const char *vs_train_products(const vs_train *train) {
   const vs_learner *l = &train->learner;
   if (l->engine) return "libtorch";
   bool onednn = l->blas.dnnl_sgemm != NULL;
-  return l->half ? "bf16 products by oneDNN" : onednn ? "fp32 products by oneDNN" : "fp32 products by OpenBLAS";
+  return l->half  ? "gradients in bf16 by oneDNN"
+         : onednn ? "gradients in fp32 by oneDNN"
+                  : "gradients in fp32 by OpenBLAS";
 }
 
 const vs_train_def *vs_train_settings(const vs_train *train) { return &train->def; }
