@@ -37,8 +37,8 @@ feature LCM liblcm-dev "messages, logger, replay, spy" /usr/include/lcm/lcm.h /u
 feature APRILTAG libapriltag-dev "robot tags" /usr/include/apriltag/apriltag.h
 feature OPENCV libopencv-dev "cameras, calibration, images" /usr/include/opencv4/opencv2/core.hpp
 feature EGL libegl-dev "rendering: video and rig" /usr/include/EGL/egl.h
-feature ONEDNN libdnnl-dev "training" /usr/include/oneapi/dnnl/dnnl.h
-feature OPENBLAS libopenblas-dev "training without oneDNN" '/usr/include/*/cblas.h'
+feature ONEDNN libdnnl-dev "training, faster" /usr/include/oneapi/dnnl/dnnl.h
+feature OPENBLAS libopenblas-dev "training" '/usr/include/*/cblas.h'
 feature TORCH libtorch-dev "training with libtorch, oracle of the tests" /usr/include/torch/csrc/api/include/torch/torch.h
 feature MPI libopenmpi-dev "training on many machines" '/usr/lib/*/openmpi/include/mpi.h'
 feature CMOCKA libcmocka-dev "tests" /usr/include/cmocka.h

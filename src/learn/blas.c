@@ -1,6 +1,7 @@
 #include "blas.h"
 
 #include <dlfcn.h>
+#include <math.h>
 #include <stdlib.h>
 
 // Values of CBLAS (netlib's cblas.h).
@@ -21,17 +22,27 @@ static bool processor_has_bf16(void) {
 #endif
 }
 
+// Whether a bfloat16 product comes out: (1 2; 3 4)(5; 6) = (17; 39). oneDNN refuses where its user limits it to less than
+// the processor has (ONEDNN_MAX_CPU_ISA).
+static bool bf16_works(const vs_blas *blas) {
+  const uint16_t a[4] = {0x3f80, 0x4000, 0x4040, 0x4080}, b[2] = {0x40a0, 0x40c0};
+  float c[2] = {0};
+  vs_blas_multiply_bf16(blas, false, false, 2, 1, 2, a, 2, b, 1, false, c, 1);
+  return c[0] == 17.0f && c[1] == 39.0f;
+}
+
 static vs_status open_onednn(vs_blas *out, vs_error *err) {
   void *library = dlopen("libdnnl.so", RTLD_NOW | RTLD_LOCAL); // the link that libdnnl-dev sets, whatever the version
   if (!library) return vs_fail(err, VS_FAIL, "training needs oneDNN: apt install libdnnl-dev (%.200s)", dlerror());
   *out = (vs_blas){.name = "oneDNN"};
+  if (!find(library, "dnnl_sgemm", (void *)&out->dnnl_sgemm) ||
+      !find(library, "omp_get_max_threads", (void *)&out->max_threads) ||
+      !find(library, "omp_set_num_threads", (void *)&out->set_threads))
+    return vs_fail(err, VS_FAIL, "libdnnl.so has no dnnl_sgemm over OpenMP: apt install libdnnl-dev");
   // Exported by both releases' libraries, though their headers keep it back: where it is missing, floats have to do.
-  if (processor_has_bf16()) find(library, "dnnl_gemm_bf16bf16f32", (void *)&out->dnnl_bf16);
-  if (find(library, "dnnl_sgemm", (void *)&out->dnnl_sgemm) &&
-      find(library, "omp_get_max_threads", (void *)&out->max_threads) &&
-      find(library, "omp_set_num_threads", (void *)&out->set_threads))
-    return VS_OK;
-  return vs_fail(err, VS_FAIL, "libdnnl.so has no dnnl_sgemm over OpenMP: apt install libdnnl-dev");
+  if (processor_has_bf16() && find(library, "dnnl_gemm_bf16bf16f32", (void *)&out->dnnl_bf16) && !bf16_works(out))
+    out->dnnl_bf16 = NULL;
+  return VS_OK;
 }
 
 // OpenBLAS chooses its kernels by the processor's model when it loads, and takes an old family for a model it does not
@@ -59,12 +70,13 @@ static vs_status open_openblas(vs_blas *out, vs_error *err) {
 }
 
 vs_status vs_blas_open(vs_blas *out, vs_blas_library which, vs_error *err) {
+  if (which == VS_BLAS_ONEDNN) return open_onednn(out, err);
   if (which == VS_BLAS_OPENBLAS) return open_openblas(out, err);
-  vs_error no_onednn = {0};
-  vs_status s = open_onednn(out, &no_onednn);
-  if (s == VS_OK) return s;
-  if (which == VS_BLAS_ANY && open_openblas(out, err) == VS_OK) return VS_OK;
-  return vs_fail(err, s, "%s", no_onednn.text);
+#if defined(__x86_64__)
+  return open_onednn(out, NULL) == VS_OK ? VS_OK : open_openblas(out, err);
+#else
+  return open_openblas(out, NULL) == VS_OK ? VS_OK : open_onednn(out, err);
+#endif
 }
 
 // oneDNN works on the calling thread alone from here on; returns how many OpenMP gave it, for whoever else uses OpenMP
@@ -73,6 +85,12 @@ static int single_thread(const vs_blas *blas) {
   int threads = blas->max_threads();
   blas->set_threads(1);
   return threads;
+}
+
+// A product that failed (out of memory) must not pass for one: what is learnt from it is then not finite.
+static void spoil(int m, int n, float *c, int ldc) {
+  for (int i = 0; i < m; i++)
+    for (int j = 0; j < n; j++) c[(size_t)i * (size_t)ldc + (size_t)j] = NAN;
 }
 
 void vs_blas_multiply(const vs_blas *blas, bool transpose_a, bool transpose_b, int m, int n, int k, const float *a,
@@ -84,16 +102,18 @@ void vs_blas_multiply(const vs_blas *blas, bool transpose_a, bool transpose_b, i
     return;
   }
   int threads = single_thread(blas);
-  blas->dnnl_sgemm(transpose_a ? 'T' : 'N', transpose_b ? 'T' : 'N', m, n, k, 1.0f, a, lda, b, ldb, beta, c, ldc);
+  if (blas->dnnl_sgemm(transpose_a ? 'T' : 'N', transpose_b ? 'T' : 'N', m, n, k, 1.0f, a, lda, b, ldb, beta, c, ldc))
+    spoil(m, n, c, ldc);
   blas->set_threads(threads);
 }
 
-bool vs_blas_has_half(const vs_blas *blas) { return blas->dnnl_bf16 != NULL; }
+bool vs_blas_has_bf16(const vs_blas *blas) { return blas->dnnl_bf16 != NULL; }
 
-void vs_blas_multiply_half(const vs_blas *blas, bool transpose_a, bool transpose_b, int m, int n, int k,
+void vs_blas_multiply_bf16(const vs_blas *blas, bool transpose_a, bool transpose_b, int m, int n, int k,
                            const uint16_t *a, int lda, const uint16_t *b, int ldb, bool accumulate, float *c, int ldc) {
   int threads = single_thread(blas);
-  blas->dnnl_bf16(transpose_a ? 'T' : 'N', transpose_b ? 'T' : 'N', m, n, k, 1.0f, a, lda, b, ldb,
-                  accumulate ? 1.0f : 0.0f, c, ldc);
+  if (blas->dnnl_bf16(transpose_a ? 'T' : 'N', transpose_b ? 'T' : 'N', m, n, k, 1.0f, a, lda, b, ldb,
+                      accumulate ? 1.0f : 0.0f, c, ldc))
+    spoil(m, n, c, ldc);
   blas->set_threads(threads);
 }

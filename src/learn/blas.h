@@ -11,7 +11,8 @@
 typedef enum vs_blas_library { VS_BLAS_ANY, VS_BLAS_ONEDNN, VS_BLAS_OPENBLAS } vs_blas_library;
 
 // Row-major float C[m][n] = A B (+ C where accumulate), with A [m][k] (or [k][m] transposed) and B [k][n] (or [n][k]
-// transposed); lda, ldb, ldc: floats from one stored row to the next. One thread; callable from many.
+// transposed); lda, ldb, ldc: floats from one stored row to the next. One thread; callable from many. Where the library
+// fails, C is NaN.
 typedef struct vs_blas {
   const char *name; // of the library
   // The functions of the library, the others NULL.
@@ -26,17 +27,17 @@ typedef struct vs_blas {
   void (*set_threads)(int);
 } vs_blas;
 
-// VS_BLAS_ANY: oneDNN where it is installed, else OpenBLAS. VS_FAIL names the Debian package. The library stays open
-// for good.
+// VS_BLAS_ANY: oneDNN on x86-64 (elsewhere it has no kernels of its own, and OpenBLAS comes first), else the other.
+// VS_FAIL names the Debian package. The library stays open for good.
 vs_status vs_blas_open(vs_blas *out, vs_blas_library which, vs_error *err);
 
 void vs_blas_multiply(const vs_blas *blas, bool transpose_a, bool transpose_b, int m, int n, int k, const float *a,
                       int lda, const float *b, int ldb, bool accumulate, float *c, int ldc);
 
 // The same with A and B of bfloat16 numbers (the upper halves of floats), added up in float: three to four times as fast
-// on processors with AMX. vs_blas_has_half: the library and the processor can.
-bool vs_blas_has_half(const vs_blas *blas);
-void vs_blas_multiply_half(const vs_blas *blas, bool transpose_a, bool transpose_b, int m, int n, int k,
+// on processors with AMX. vs_blas_has_bf16: the library and the processor can.
+bool vs_blas_has_bf16(const vs_blas *blas);
+void vs_blas_multiply_bf16(const vs_blas *blas, bool transpose_a, bool transpose_b, int m, int n, int k,
                            const uint16_t *a, int lda, const uint16_t *b, int ldb, bool accumulate, float *c, int ldc);
 
 #endif

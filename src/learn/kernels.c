@@ -79,7 +79,7 @@ CLONES void vs_kernel_column_sums(const float *restrict x, size_t rows, size_t c
   }
 }
 
-CLONES void vs_kernel_round(const float *restrict x, size_t count, uint16_t *restrict out) {
+CLONES void vs_kernel_to_bf16(const float *restrict x, size_t count, uint16_t *restrict out) {
   for (size_t i = 0; i < count; i++) {
     uint32_t bits;
     memcpy(&bits, &x[i], sizeof bits);

@@ -27,7 +27,7 @@ void vs_kernel_head_backward(const float *x, float *d, size_t stride, size_t row
 void vs_kernel_column_sums(const float *x, size_t rows, size_t columns, float *out);
 
 // x rounded to the nearest bfloat16 (the upper half of a float), ties to even; NaN stays NaN.
-void vs_kernel_round(const float *x, size_t count, uint16_t *out);
+void vs_kernel_to_bf16(const float *x, size_t count, uint16_t *out);
 
 // a += b.
 void vs_kernel_add(float *a, const float *b, size_t count);

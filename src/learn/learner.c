@@ -6,7 +6,8 @@
 
 #include "kernels.h"
 
-// BLOCK: rows worked on at once, so that all between gathering them and their gradients stays in the second-level cache.
+// BLOCK: the fastest of 128 to 1070 rows at the paper's sizes (make bench N=learn): what a product leaves is mostly still
+// in the second-level cache when the next step reads it.
 enum { A = VS_ACTION_SIZE, BLOCK = 192 };
 
 // What one piece of a minibatch needs: a block of its rows gathered, activations, its part of the gradient.
@@ -19,7 +20,7 @@ struct vs_learner_part {
   vs_ppo_stats stats;
 };
 
-static vs_status part_init(struct vs_learner_part *part, const vs_net *net, const uint16_t *half, int rows,
+static vs_status part_init(struct vs_learner_part *part, const vs_net *net, const uint16_t *bf16, int rows,
                            vs_error *err) {
   size_t n = (size_t)rows, inputs = (size_t)net->shape.inputs;
   part->capacity = rows;
@@ -36,7 +37,7 @@ static vs_status part_init(struct vs_learner_part *part, const vs_net *net, cons
   part->target = at, at += n;
   part->old_value = at, at += n;
   part->dvalue = at;
-  return vs_net_work_init(&part->work, net, rows, true, half, err);
+  return vs_net_work_init(&part->work, net, rows, true, bf16, err);
 }
 
 static void part_free(struct vs_learner_part *part) {
@@ -48,24 +49,26 @@ static void part_free(struct vs_learner_part *part) {
 vs_status vs_learner_init(vs_learner *learner, const vs_learner_def *def, vs_pool *pool, uint64_t seed, vs_error *err) {
   *learner = (vs_learner){.def = *def, .pool = pool};
   vs_status s = vs_blas_open(&learner->blas, VS_BLAS_ANY, err);
-  bool can_half = s == VS_OK && vs_blas_has_half(&learner->blas);
-  if (s == VS_OK && def->precision == VS_PRECISION_BF16 && !can_half)
+  bool can_bf16 = s == VS_OK && vs_blas_has_bf16(&learner->blas);
+  if (s == VS_OK && def->precision == VS_PRECISION_BF16 && !can_bf16)
     s = vs_fail(err, VS_FAIL,
-                "precision = bf16 needs oneDNN (apt install libdnnl-dev) and a processor with AVX512-BF16: set fp32");
+                "precision = bf16 needs oneDNN (apt install libdnnl-dev) and a processor with AVX512-BF16: --set "
+                "precision=fp32");
   if (s == VS_OK) s = vs_net_init(&learner->net, &def->shape, err);
   if (s != VS_OK) return s;
   size_t size = (learner->net.size + 15) / 16 * 16;
   learner->parameters = aligned_alloc(64, 3 * size * sizeof(float));
   learner->gradient = aligned_alloc(64, size * sizeof(float));
   learner->part = calloc((size_t)def->pieces, sizeof *learner->part);
-  bool half = can_half && def->precision != VS_PRECISION_FP32;
-  if (half) learner->half = aligned_alloc(64, (size + 31) / 32 * 32 * sizeof(uint16_t));
-  if (!learner->parameters || !learner->gradient || !learner->part || (half && !learner->half))
+  bool bf16 = can_bf16 && def->precision != VS_PRECISION_FP32;
+  if (bf16) learner->bf16 = aligned_alloc(64, (size + 31) / 32 * 32 * sizeof(uint16_t));
+  if (!learner->parameters || !learner->gradient || !learner->part || (bf16 && !learner->bf16))
     s = vs_fail(err, VS_FAIL, "out of memory for %zu parameters", size);
   int rows = (def->minibatch + def->pieces - 1) / def->pieces;
-  if (rows > BLOCK) rows = BLOCK;
+  int block = def->block ? def->block : BLOCK;
+  if (rows > block) rows = block;
   for (int i = 0; s == VS_OK && i < def->pieces; i++)
-    s = part_init(&learner->part[i], &learner->net, learner->half, rows, err);
+    s = part_init(&learner->part[i], &learner->net, learner->bf16, rows, err);
   if (s == VS_OK) {
     memset(learner->parameters, 0, 3 * size * sizeof(float));
     learner->mean = learner->parameters + size;
@@ -82,7 +85,7 @@ void vs_learner_free(vs_learner *learner) {
   free(learner->part);
   free(learner->order);
   free(learner->gradient);
-  free(learner->half);
+  free(learner->bf16);
   free(learner->parameters);
   *learner = (vs_learner){0};
 }
@@ -156,12 +159,13 @@ static void sum_range(void *context, int range, int thread) {
   for (int i = 1; i < l->def.pieces; i++) vs_kernel_add(l->gradient + from, l->part[i].gradient + from, count);
 }
 
+// The backward pass multiplies by the weights of the second layer and up.
 static void round_range(void *context, int range, int thread) {
   (void)thread;
   vs_learner *l = context;
-  size_t from, count;
-  range_of(l, range, &from, &count);
-  vs_kernel_round(l->parameters + from, count, l->half + from);
+  size_t first = l->net.shape.layers > 1 ? l->net.weight[1][0] : l->net.size, all = l->net.size - first;
+  size_t from = first + all * (size_t)range / RANGES, to = first + all * (size_t)(range + 1) / RANGES;
+  vs_kernel_to_bf16(l->parameters + from, to - from, l->bf16 + from);
 }
 
 static void add_stats(vs_ppo_stats *sum, const vs_ppo_stats *part) {
@@ -197,7 +201,7 @@ vs_status vs_learner_gradient(vs_learner *learner, const vs_ppo_batch *batch, co
     vs_status s = engine_gradient(&j, stats, err);
     if (s != VS_OK) return s;
   } else {
-    if (learner->half) vs_pool_run(learner->pool, RANGES, round_range, learner);
+    if (learner->bf16) vs_pool_run(learner->pool, RANGES, round_range, learner);
     vs_pool_run(learner->pool, learner->def.pieces, gradient_piece, &j);
     for (int i = 0; i < learner->def.pieces; i++) add_stats(stats, &learner->part[i].stats);
     vs_pool_run(learner->pool, RANGES, sum_range, learner);

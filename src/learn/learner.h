@@ -10,7 +10,7 @@
 #include "ppo.h"
 #include "vsss/rng.h"
 
-// What the products of the backward pass are of. AUTO: bfloat16 where the processor has it.
+// What the products of the backward pass are of. AUTO: bfloat16 where oneDNN and the processor have it.
 typedef enum vs_precision { VS_PRECISION_FP32, VS_PRECISION_BF16, VS_PRECISION_AUTO } vs_precision;
 
 typedef struct vs_learner_def {
@@ -20,6 +20,7 @@ typedef struct vs_learner_def {
   double first_shape; // alpha = beta of the untrained policy
   int epochs, minibatch;
   int pieces; // a minibatch is computed in this many parts, whatever the number of threads
+  int block;  // a piece is computed in blocks of at most so many rows; 0: 192
   vs_precision precision;
 } vs_learner_def;
 
@@ -51,7 +52,7 @@ typedef struct vs_learner {
   const vs_gradient_engine *engine;  // borrowed; NULL: our kernels
   float *parameters, *mean, *square; // [net.size], one block; what a checkpoint keeps, with steps
   long long steps;                   // of Adam
-  uint16_t *half;                    // [net.size]: parameters rounded for the backward pass; NULL: products of floats
+  uint16_t *bf16;                    // [net.size]: weights for the backward pass; NULL: it multiplies floats
   struct vs_learner_part *part;      // [pieces]: workspaces
   float *gradient;                   // [net.size]
   int *order;                        // permutation of the batch

@@ -127,18 +127,18 @@ static void lay_out(vs_net_work *work, const vs_net *net, bool backward, arena *
     size_t size = rows * (size_t)(net->nets * s->width[l]);
     work->hidden[l] = room(a, size, sizeof(float));
     if (backward) work->gradient[l] = room(a, size, sizeof(float));
-    if (!work->half) continue;
-    work->half_hidden[l] = room(a, size, sizeof(uint16_t));
-    work->half_gradient[l] = room(a, size, sizeof(uint16_t));
+    if (!work->bf16) continue;
+    work->bf16_hidden[l] = room(a, size, sizeof(uint16_t));
+    work->bf16_gradient[l] = room(a, size, sizeof(uint16_t));
   }
-  if (work->half) work->half_x = room(a, rows * (size_t)s->inputs, sizeof(uint16_t));
+  if (work->bf16) work->bf16_x = room(a, rows * (size_t)s->inputs, sizeof(uint16_t));
   work->raw = room(a, rows * 2 * (size_t)s->actions, sizeof(float));
   work->value = room(a, rows, sizeof(float));
 }
 
-vs_status vs_net_work_init(vs_net_work *work, const vs_net *net, int rows, bool backward, const uint16_t *half,
+vs_status vs_net_work_init(vs_net_work *work, const vs_net *net, int rows, bool backward, const uint16_t *bf16,
                            vs_error *err) {
-  *work = (vs_net_work){.rows = rows, .half = half};
+  *work = (vs_net_work){.rows = rows, .bf16 = bf16};
   arena a = {0};
   lay_out(work, net, backward, &a);
   work->block = aligned_alloc(64, a.used);
@@ -197,17 +197,17 @@ static void backward_heads(const vs_net *net, const float *parameters, int rows,
 // A matrix, or a part of one, in the one form or the other.
 typedef struct operand {
   const float *full;
-  const uint16_t *half; // NULL: full counts
+  const uint16_t *bf16; // NULL: full counts
 } operand;
 
-static operand part_of(const float *full, const uint16_t *half, size_t offset) {
-  return half ? (operand){NULL, half + offset} : (operand){full + offset, NULL};
+static operand part_of(const float *full, const uint16_t *bf16, size_t offset) {
+  return bf16 ? (operand){NULL, bf16 + offset} : (operand){full + offset, NULL};
 }
 
 static void multiply(const vs_blas *blas, bool transpose_a, bool transpose_b, int m, int n, int k, operand a, int lda,
                      operand b, int ldb, bool accumulate, float *c, int ldc) {
-  if (a.half)
-    vs_blas_multiply_half(blas, transpose_a, transpose_b, m, n, k, a.half, lda, b.half, ldb, accumulate, c, ldc);
+  if (a.bf16)
+    vs_blas_multiply_bf16(blas, transpose_a, transpose_b, m, n, k, a.bf16, lda, b.bf16, ldb, accumulate, c, ldc);
   else
     vs_blas_multiply(blas, transpose_a, transpose_b, m, n, k, a.full, lda, b.full, ldb, accumulate, c, ldc);
 }
@@ -215,9 +215,9 @@ static void multiply(const vs_blas *blas, bool transpose_a, bool transpose_b, in
 // The backward pass's operands into bfloat16.
 static void round_inputs(const vs_net *net, const float *x, int rows, vs_net_work *work) {
   const vs_net_shape *s = &net->shape;
-  vs_kernel_round(x, (size_t)rows * (size_t)s->inputs, work->half_x);
+  vs_kernel_to_bf16(x, (size_t)rows * (size_t)s->inputs, work->bf16_x);
   for (int l = 0; l < s->layers - 1; l++)
-    vs_kernel_round(work->hidden[l], (size_t)rows * (size_t)(net->nets * s->width[l]), work->half_hidden[l]);
+    vs_kernel_to_bf16(work->hidden[l], (size_t)rows * (size_t)(net->nets * s->width[l]), work->bf16_hidden[l]);
 }
 
 void vs_net_backward(const vs_net *net, const vs_blas *blas, const float *parameters, const float *x, int rows,
@@ -225,23 +225,23 @@ void vs_net_backward(const vs_net *net, const vs_blas *blas, const float *parame
   const vs_net_shape *s = &net->shape;
   const int nets = net->nets;
   backward_heads(net, parameters, rows, draw, dvalue, work, gradient);
-  if (work->half) round_inputs(net, x, rows, work);
+  if (work->bf16) round_inputs(net, x, rows, work);
   for (int l = s->layers - 1; l >= 0; l--) {
     const int width = s->width[l], all = nets * width;
     vs_kernel_column_sums(work->gradient[l], (size_t)rows, (size_t)all, gradient + net->bias[l]);
-    if (work->half) vs_kernel_round(work->gradient[l], (size_t)rows * (size_t)all, work->half_gradient[l]);
+    if (work->bf16) vs_kernel_to_bf16(work->gradient[l], (size_t)rows * (size_t)all, work->bf16_gradient[l]);
     if (l == 0) {
-      multiply(blas, true, false, s->inputs, all, rows, part_of(x, work->half_x, 0), s->inputs,
-               part_of(work->gradient[0], work->half_gradient[0], 0), all, true, gradient + net->weight[0][0], all);
+      multiply(blas, true, false, s->inputs, all, rows, part_of(x, work->bf16_x, 0), s->inputs,
+               part_of(work->gradient[0], work->bf16_gradient[0], 0), all, true, gradient + net->weight[0][0], all);
       continue;
     }
     const int before = s->width[l - 1], all_before = nets * before;
     for (int n = 0; n < nets; n++) {
-      const operand above = part_of(work->gradient[l], work->half_gradient[l], (size_t)(n * width));
+      const operand above = part_of(work->gradient[l], work->bf16_gradient[l], (size_t)(n * width));
       multiply(blas, true, false, before, width, rows,
-               part_of(work->hidden[l - 1], work->half_hidden[l - 1], (size_t)(n * before)), all_before, above, all,
+               part_of(work->hidden[l - 1], work->bf16_hidden[l - 1], (size_t)(n * before)), all_before, above, all,
                true, gradient + net->weight[l][n], width);
-      multiply(blas, false, true, rows, before, width, above, all, part_of(parameters, work->half, net->weight[l][n]),
+      multiply(blas, false, true, rows, before, width, above, all, part_of(parameters, work->bf16, net->weight[l][n]),
                width, false, work->gradient[l - 1] + n * before, all_before);
     }
     vs_kernel_tanh_backward(work->gradient[l - 1], work->hidden[l - 1], (size_t)rows * (size_t)all_before);

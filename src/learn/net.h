@@ -44,21 +44,21 @@ vs_status vs_net_randomise(const vs_net *net, double first_shape, vs_rng *rng, f
 // The actor's part of parameters of `net` as parameters of `actor` (made with the same shape, critic = false).
 void vs_net_extract_actor(const vs_net *net, const float *parameters, const vs_net *actor, float *out);
 
-// Room for the activations of up to `rows` rows; one per thread. With `half` the backward pass multiplies bfloat16 numbers
+// Room for the activations of up to `rows` rows; one per thread. With `bf16` the backward pass multiplies bfloat16 numbers
 // (8 bits of mantissa), added up in float. The forward pass never does: what the robots see would be rounded to steps of
 // 3 mm, and four of four trial runs earned less with it.
 typedef struct vs_net_work {
   int rows;
-  const uint16_t *half; // borrowed: the parameters rounded to bfloat16 by the owner; NULL: products of floats
-  uint16_t *half_x, *half_hidden[VS_NET_MAX_LAYERS], *half_gradient[VS_NET_MAX_LAYERS]; // of backward with half
+  const uint16_t *bf16; // borrowed: the parameters rounded to bfloat16 by the owner; NULL: products of floats
+  uint16_t *bf16_x, *bf16_hidden[VS_NET_MAX_LAYERS], *bf16_gradient[VS_NET_MAX_LAYERS]; // of backward with bf16
   float *hidden[VS_NET_MAX_LAYERS];                                                     // [rows][N * width]
   float *gradient[VS_NET_MAX_LAYERS]; // the same; NULL where made without backward
   float *raw;                         // [rows][2 * actions]
   float *value;                       // [rows]; zeros without a critic
-  void *block;                        // owns all of the above but half
+  void *block;                        // owns all of the above but bf16
 } vs_net_work;
 
-vs_status vs_net_work_init(vs_net_work *work, const vs_net *net, int rows, bool backward, const uint16_t *half,
+vs_status vs_net_work_init(vs_net_work *work, const vs_net *net, int rows, bool backward, const uint16_t *bf16,
                            vs_error *err);
 void vs_net_work_free(vs_net_work *work);
 

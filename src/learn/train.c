@@ -27,6 +27,16 @@ static vs_learner_def learner_def(const vs_train_def *def, const vs_net_shape *s
                           .pieces = def->pieces};
 }
 
+// Ranks that average their gradients compute them alike.
+static vs_status check_precision(const vs_train *t, vs_error *err) {
+  double with_bf16 = t->learner.bf16 != NULL;
+  if (!t->group) return VS_OK;
+  vs_status s = t->group->sum_doubles(t->group->self, &with_bf16, 1, err);
+  if (s != VS_OK || with_bf16 == 0.0 || with_bf16 == vs_group_size(t->group)) return s;
+  return vs_fail(err, VS_USAGE, "precision = auto: %.0f of %d ranks have bf16: --set precision=fp32", with_bf16,
+                 vs_group_size(t->group));
+}
+
 static vs_status make_learner(vs_train *t, vs_error *err) {
   vs_net_shape shape = {.inputs = VS_OBS_SIZE, .actions = VS_ACTION_SIZE, .critic = true};
   vs_status s = vs_train_hidden(&t->def, &shape, err);
@@ -34,7 +44,10 @@ static vs_status make_learner(vs_train *t, vs_error *err) {
   vs_learner_def def = learner_def(&t->def, &shape);
   s = vs_train_precision(&t->def, &def.precision, err);
   if (s != VS_OK) return s;
-  if (!strcmp(t->def.learner, "torch")) def.precision = VS_PRECISION_FP32;
+  if (!strcmp(t->def.learner, "torch")) {
+    def.precision = VS_PRECISION_FP32;
+    def.block = def.minibatch; // it gains nothing from small ones
+  }
   s = vs_pool_new(t->def.threads, &t->pool, err);
   if (s == VS_OK) s = vs_learner_init(&t->learner, &def, t->pool, (uint64_t)t->def.seed, err);
   if (s != VS_OK) return s;
@@ -81,6 +94,7 @@ vs_status vs_train_new_over(const vs_train_def *def, const vs_matches *matches, 
   if (s == VS_OK) s = vs_reward_mix_parse(def->reward, &t->reward_start, err);
   if (s == VS_OK) s = vs_reward_mix_parse(def->reward_end, &t->reward_end, err);
   if (s == VS_OK) s = make_learner(t, err);
+  if (s == VS_OK) s = check_precision(t, err);
   if (s == VS_OK) s = make_league_and_rollout(t, err);
   if (s == VS_OK && !matches) s = vs_train_matches_open(def, &t->league, vs_group_rank(group), NULL, &t->matches, err);
   if (s != VS_OK) {
@@ -244,7 +258,7 @@ const char *vs_train_products(const vs_train *train) {
   const vs_learner *l = &train->learner;
   if (l->engine) return "libtorch";
   bool onednn = l->blas.dnnl_sgemm != NULL;
-  return l->half  ? "gradients in bf16 by oneDNN"
+  return l->bf16  ? "gradients in bf16 by oneDNN"
          : onednn ? "gradients in fp32 by oneDNN"
                   : "gradients in fp32 by OpenBLAS";
 }
@@ -270,15 +284,18 @@ int vs_train_opponents(const vs_train *train, vs_train_opponent *out, int max) {
 
 vs_status vs_train_export(const vs_train *train, const char *path, bool with_spread, const char *const *notes,
                           vs_error *err) {
-  enum { OWN = 4, MAX = 24 };
+  enum { OWN = 5, MAX = 24 };
   char numbers[3][32];
   snprintf(numbers[0], sizeof numbers[0], "%d", train->def.seed);
   snprintf(numbers[1], sizeof numbers[1], "%lld", train->transitions);
   snprintf(numbers[2], sizeof numbers[2], "%.0f", train->wall_s);
   char settings[4096];
   vs_train_def_text(&train->def, settings, sizeof settings);
-  vs_onnx_note note[MAX] = {
-      {"seed", numbers[0]}, {"transitions", numbers[1]}, {"wall_s", numbers[2]}, {"settings", settings}};
+  vs_onnx_note note[MAX] = {{"seed", numbers[0]},
+                            {"transitions", numbers[1]},
+                            {"wall_s", numbers[2]},
+                            {"settings", settings},
+                            {"learner", vs_train_products(train)}};
   int count = OWN;
   for (; notes && notes[0] && count < MAX; notes += 2) note[count++] = (vs_onnx_note){notes[0], notes[1]};
   return vs_export_actor(path, &train->learner.net, train->learner.parameters, "vsss", with_spread, note, count, err);

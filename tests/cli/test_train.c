@@ -149,6 +149,19 @@ static void wrong_settings_are_refused_with_the_allowed_range(void **state) {
   assert_refused("plot /nowhere", 1, "/nowhere/progress.csv");
 }
 
+// The banner says what multiplies; a oneDNN that is told to do without bf16 is not asked for it.
+static void the_precision_is_what_was_set_or_what_the_machine_has(void **state) {
+  (void)state;
+  train("train --run %s/fp32 " SMALL "--transitions 0.0001 --set precision=fp32");
+  assert_non_null(strstr(run.out, "gradients in fp32"));
+  assert_non_null(strstr(content("%s/fp32/settings.ini"), "precision = fp32"));
+  setenv("ONEDNN_MAX_CPU_ISA", "AVX2", 1);
+  train("train --run %s/auto " SMALL "--transitions 0.0001");
+  assert_non_null(strstr(run.out, "gradients in fp32"));
+  assert_refused(with_folder("train --run %s/bf16 " SMALL "--set precision=bf16"), 1, "--set precision=fp32");
+  unsetenv("ONEDNN_MAX_CPU_ISA");
+}
+
 // Two processes: as root, Open MPI wants two variables.
 static bool ranks_can_be_started(void) {
   setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
@@ -210,6 +223,7 @@ int main(void) {
       cmocka_unit_test(a_script_is_imitated_before_the_run),
       cmocka_unit_test(a_damaged_checkpoint_is_named_and_the_one_before_continues),
       cmocka_unit_test(wrong_settings_are_refused_with_the_allowed_range),
+      cmocka_unit_test(the_precision_is_what_was_set_or_what_the_machine_has),
       cmocka_unit_test(two_ranks_train_together_and_a_dead_one_ends_the_run),
       cmocka_unit_test(two_hosts_train_as_two_ranks_on_one_do),
   };

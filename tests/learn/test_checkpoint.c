@@ -129,6 +129,20 @@ static void a_checkpoint_of_other_settings_is_refused(void **state) {
   vs_train_free(train);
 }
 
+static void a_run_older_than_the_precision_goes_on_in_fp32(void **state) {
+  (void)state;
+  static const char settings[] = "gamma = 0.9\n";
+  vs_bytes archive = {0};
+  vs_train_def def;
+  vs_archive_begin(&archive);
+  vs_archive_section(&archive, "contract", vs_contract_hash_hex(), 16);
+  vs_archive_section(&archive, "settings", settings, sizeof settings - 1);
+  assert_ok(vs_archive_write(&archive, file, err));
+  assert_ok(vs_train_read_def(file, &def, err));
+  assert_near(def.gamma, 0.9, 0.0);
+  assert_string_equal(def.precision, "fp32");
+}
+
 static void a_slim_checkpoint_continues_the_networks_with_new_matches(void **state) {
   (void)state;
   vs_train_def def = tiny_def();
@@ -242,6 +256,7 @@ int main(void) {
       cmocka_unit_test(a_resumed_run_continues_bit_for_bit),
       cmocka_unit_test(a_damaged_checkpoint_falls_back_to_the_one_before_and_says_so),
       cmocka_unit_test(a_checkpoint_of_other_settings_is_refused),
+      cmocka_unit_test(a_run_older_than_the_precision_goes_on_in_fp32),
       cmocka_unit_test(a_slim_checkpoint_continues_the_networks_with_new_matches),
       cmocka_unit_test(a_full_disk_leaves_the_old_checkpoint_and_names_the_file),
       cmocka_unit_test(a_run_killed_at_any_moment_resumes_exactly),

@@ -69,6 +69,7 @@ static void the_number_of_threads_changes_no_bit(void **state) {
   static data d;
   make_data(&d);
   vs_learner_def def = small_def();
+  def.precision = VS_PRECISION_AUTO;
   vs_learner one, three;
   vs_learner_stats stats;
   updated(&def, 1, &d, &one, &stats);
@@ -76,6 +77,67 @@ static void the_number_of_threads_changes_no_bit(void **state) {
   assert_memory_equal(one.parameters, three.parameters, one.net.size * sizeof(float));
   vs_learner_free(&one);
   vs_learner_free(&three);
+}
+
+// The gradient of the whole batch by a learner of this definition, with these parameters.
+static float *gradient_of(const vs_learner_def *def, const data *d, const float *parameters) {
+  vs_pool *pool;
+  vs_learner learner;
+  vs_ppo_stats stats = {0};
+  const vs_ppo_batch batch = batch_of(d, 0, ROWS);
+  int rows[ROWS];
+  for (int i = 0; i < ROWS; i++) rows[i] = i;
+  assert_ok(vs_pool_new(2, &pool, err));
+  assert_ok(vs_learner_init(&learner, def, pool, 9, err));
+  // Once with its own parameters: nothing of them may be left in the second gradient.
+  assert_ok(vs_learner_gradient(&learner, &batch, rows, ROWS, ROWS, 0.0, 1.0, &stats, err));
+  memcpy(learner.parameters, parameters, learner.net.size * sizeof(float));
+  assert_ok(vs_learner_gradient(&learner, &batch, rows, ROWS, ROWS, 0.0, 1.0, &stats, err));
+  assert_near(stats.rows, 2.0 * ROWS, 0.0);
+  float *out = malloc(learner.net.size * sizeof *out);
+  memcpy(out, learner.gradient, learner.net.size * sizeof *out);
+  vs_learner_free(&learner);
+  vs_pool_free(pool);
+  return out;
+}
+
+// Distance of two gradients in units of the first's length.
+static double distance(const float *a, const float *b, size_t count) {
+  double off = 0.0, length = 0.0;
+  for (size_t i = 0; i < count; i++) {
+    off += pow((double)a[i] - b[i], 2.0);
+    length += pow(a[i], 2.0);
+  }
+  return sqrt(off / length);
+}
+
+static void pieces_blocks_and_bfloat16_give_one_gradient(void **state) {
+  (void)state;
+  static data d;
+  make_data(&d);
+  vs_learner_def def = small_def();
+  def.minibatch = ROWS;
+  vs_learner moved; // parameters that are no learner's first
+  vs_learner_stats stats;
+  updated(&def, 1, &d, &moved, &stats);
+  def.pieces = 1;
+  float *whole = gradient_of(&def, &d, moved.parameters);
+  def.pieces = 7; // of 34 or 35 rows
+  def.block = 8;  // the last of 2 or 3
+  float *parts = gradient_of(&def, &d, moved.parameters);
+  assert_true(distance(whole, parts, moved.net.size) < 1e-5);
+  if (vs_blas_has_bf16(&moved.blas)) {
+    def.precision = VS_PRECISION_BF16;
+    float *rounded = gradient_of(&def, &d, moved.parameters);
+    double off = distance(whole, rounded, moved.net.size);
+    assert_true(off < 0.01 && off > 1e-5);
+    free(rounded);
+  } else {
+    print_message("note: 1 check not run: no bfloat16 here\n");
+  }
+  free(parts);
+  free(whole);
+  vs_learner_free(&moved);
 }
 
 static void updates_reduce_the_loss_of_policy_and_value(void **state) {
@@ -223,6 +285,7 @@ static void a_gradient_that_is_not_finite_ends_the_update_with_an_error(void **s
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_number_of_threads_changes_no_bit),
+      cmocka_unit_test(pieces_blocks_and_bfloat16_give_one_gradient),
       cmocka_unit_test(updates_reduce_the_loss_of_policy_and_value),
       cmocka_unit_test(explained_variance_is_0_for_a_constant_and_1_for_the_truth),
       cmocka_unit_test(two_ranks_with_half_the_rows_each_make_the_update_of_one),

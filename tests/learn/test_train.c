@@ -90,6 +90,7 @@ static void the_torch_engine_trains_as_our_kernels_do(void **state) {
     return;
   }
   snprintf(def.learner, sizeof def.learner, "own");
+  snprintf(def.precision, sizeof def.precision, "fp32");
   vs_train *own = open_tiny(&def);
   vs_train_report a, b;
   for (int i = 0; i < 2; i++) {
