@@ -22,8 +22,8 @@ static bool processor_has_bf16(void) {
 #endif
 }
 
-// Whether a bfloat16 product comes out: (1 2; 3 4)(5; 6) = (17; 39). oneDNN refuses where its user limits it to less than
-// the processor has (ONEDNN_MAX_CPU_ISA).
+// Whether a bfloat16 product comes out: (1 2; 3 4)(5; 6) = (17; 39). oneDNN 2.6 refuses where its user limits it to less
+// than the processor has (ONEDNN_MAX_CPU_ISA).
 static bool bf16_works(const vs_blas *blas) {
   const uint16_t a[4] = {0x3f80, 0x4000, 0x4040, 0x4080}, b[2] = {0x40a0, 0x40c0};
   float c[2] = {0};
