@@ -43,8 +43,8 @@ typedef struct vs_train_def {
   char hidden[64]; // layer sizes, such as "256,256"
   double first_shape;
   char learner[16]; // own or torch
-  // Of the products in the own learner's backward pass: fp32, bf16 (needs oneDNN and AVX512-BF16), or auto (bf16 where they are; ranks on
-  // machines of several kinds set one).
+  // Of the products in the own learner's backward pass: fp32, bf16 (needs oneDNN and AVX512-BF16), or auto (bf16 where
+  // they are; ranks on machines of several kinds set one).
   char precision[16];
   // How long.
   double transitions_m; // millions; 0: until stopped
