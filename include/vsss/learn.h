@@ -119,13 +119,18 @@ typedef struct vs_train_opponent {
 } vs_train_opponent;
 int vs_train_opponents(const vs_train *train, vs_train_opponent *out, int max);
 
-// Checkpoints. Written atomically; the one before is kept as FILE.previous. vs_train_load continues a run of the same
+// Checkpoints. Written atomically; the one before is kept as FILE.previous. Before the first update they hold the networks
+// alone. vs_train_load continues a run of the same
 // settings (its def is the one of vs_train_read_def) and falls back to FILE.previous where FILE is damaged; note (may be
 // NULL, 256 bytes) then says why, else it is empty. In a group rank 0 reads and all continue from its file; the other
 // ranks' matches start anew.
-vs_status vs_train_save(const vs_train *train, const char *path, vs_error *err);
+vs_status vs_train_save(vs_train *train, const char *path, vs_error *err);
 // Without matches and league (4.5 MB at 464-256-256): a run that continues from it meets itself as it is now first.
-vs_status vs_train_save_slim(const vs_train *train, const char *path, vs_error *err);
+vs_status vs_train_save_slim(vs_train *train, const char *path, vs_error *err);
+// For who cannot wait until an update is over: a copy of the state between two updates, kept in memory by the thread that
+// trains; then written by any thread while that one goes on. update (may be NULL): how many it holds. VS_FAIL: none kept.
+vs_status vs_train_keep(vs_train *train, vs_error *err);
+vs_status vs_train_save_kept(vs_train *train, const char *path, double *update, vs_error *err);
 vs_status vs_train_read_def(const char *path, vs_train_def *out, vs_error *err);
 vs_status vs_train_load(vs_train *train, const char *path, char *note, vs_error *err);
 

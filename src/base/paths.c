@@ -2,11 +2,13 @@
 #include "vsss/paths.h"
 
 #include <dlfcn.h>
+#include <errno.h>
 #include <libgen.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #ifndef VSSS_PREFIX
@@ -73,6 +75,21 @@ vs_status vs_path_find(const char *relative, char *out, size_t out_size, vs_erro
     snprintf(tried + used, sizeof tried - used, "%s%.120s", used ? ", " : "", candidate);
   }
   return vs_fail(err, VS_FAIL, "%s: not found (tried %s); set VSSS_HOME to the folder that holds it", relative, tried);
+}
+
+vs_status vs_path_make_folder(const char *path, unsigned mode, vs_error *err) {
+  char part[PATH_MAX];
+  size_t length = strlen(path);
+  if (length >= sizeof part) return vs_fail(err, VS_FAIL, "%.100s...: path too long", path);
+  for (size_t i = 1; i <= length; i++) {
+    if (path[i] != '/' && path[i] != '\0') continue;
+    memcpy(part, path, i);
+    part[i] = '\0';
+    if (mkdir(part, mode) != 0 && errno != EEXIST) return vs_fail(err, VS_FAIL, "%s: %s", part, strerror(errno));
+  }
+  struct stat info;
+  if (stat(path, &info) != 0) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
+  return S_ISDIR(info.st_mode) ? VS_OK : vs_fail(err, VS_FAIL, "%s: is a file, not a folder", path);
 }
 
 vs_status vs_module_load(const char *name, const char *debian_package, void **handle, vs_error *err) {

@@ -41,9 +41,15 @@ void vs_cli_realtime(int priority);
 // Prints "vsss COMMAND: text" on stderr and returns the exit status that belongs to it.
 int vs_cli_error(const char *command, const vs_error *err);
 
-// Set by SIGINT and SIGTERM once vs_cli_catch_interrupts was called; a second signal ends the program at once.
+// Set by SIGINT, SIGTERM and SIGHUP (unless the program was started to ignore that one) once vs_cli_catch_interrupts was
+// called; a second signal ends the program at once.
 void vs_cli_catch_interrupts(void);
 bool vs_cli_interrupted(void);
+// The same without disturbing a thread that computes: called before any other is started, blocks these signals in all and
+// lets a thread of its own wait for them. first is called at the first, on that thread; second at the second, after which
+// the program ends with 128 + the signal's number.
+vs_status vs_cli_await_interrupts(void (*first)(void *context), void (*second)(void *context), void *context,
+                                  vs_error *err);
 
 // Lines that rewrite themselves on a terminal: bar, fraction, time left, then text, of which each '\n' begins another
 // line; all are cut to the terminal's width. Silent where stderr is no terminal.

@@ -2,6 +2,7 @@
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +12,7 @@
 
 #include "cli.h"
 #include "commands.h"
+#include "run_folder.h"
 #include "vsss/clock.h"
 #include "vsss/journal.h"
 #include "vsss/learn.h"
@@ -29,25 +31,17 @@ typedef struct session {
   char folder[PATH_MAX - 64], command[1024], commit[64];
   vs_group *group; // NULL: alone
   bool first;      // rank 0: shows, logs, saves
+  bool continued;  // --resume of this folder
   vs_train *train;
   vs_journal *journal;
   vs_train_report report;
   double start_s, checkpoint_s, eval_s, line_s;
   char scores[256]; // of the last evaluation, for the policy's metadata
   vs_progress progress;
+  pthread_mutex_t alive; // held while an interrupt uses what is here, and from the end on
 } session;
 
 static double now_s(void) { return 1e-6 * (double)vs_clock_monotonic_us(); }
-
-static vs_status make_folder(const char *path, vs_error *err) {
-  char part[PATH_MAX];
-  for (size_t i = 1; i <= strlen(path); i++) {
-    if (path[i] != '/' && path[i] != '\0') continue;
-    snprintf(part, sizeof part, "%.*s", (int)i, path);
-    if (mkdir(part, 0755) != 0 && errno != EEXIST) return vs_fail(err, VS_FAIL, "%s: %s", part, strerror(errno));
-  }
-  return VS_OK;
-}
 
 // --resume names a run's folder, or a checkpoint: then a new run begins with what that one had learnt.
 static bool resumes_file(const options *o) {
@@ -104,10 +98,15 @@ static void find_commit(char *out, size_t size) {
   if (f) pclose(f);
 }
 
-static vs_status save(session *s, vs_error *err) {
+static vs_status save_checkpoint(session *s, vs_error *err) {
   char path[PATH_MAX];
   snprintf(path, sizeof path, "%s/checkpoint", s->folder);
-  vs_status status = vs_train_save(s->train, path, err);
+  return vs_train_save(s->train, path, err);
+}
+
+static vs_status save(session *s, vs_error *err) {
+  char path[PATH_MAX];
+  vs_status status = save_checkpoint(s, err);
   const char *const notes[] = {"command", s->command, "commit", s->commit, "score", s->scores, NULL};
   snprintf(path, sizeof path, "%s/policy.onnx", s->folder);
   if (status == VS_OK) status = vs_train_export(s->train, path, true, notes, err);
@@ -224,13 +223,41 @@ static vs_status record(session *s, vs_error *err) {
   return now_s() - s->checkpoint_s >= 60.0 * s->opt->checkpoint_min ? save(s, err) : VS_OK;
 }
 
+// At the first interrupt, while the update goes on.
+static void announce_stop(void *context) {
+  session *s = context;
+  if (s->first)
+    fprintf(stderr,
+            "%svsss train: stopping after this update; once more, and what was learnt before it is saved at once\n",
+            s->progress.terminal ? "\n" : "");
+}
+
+// At the second: saves the state before this update, which is in memory.
+static void save_now(void *context) {
+  session *s = context;
+  if (!s->first) return;
+  char path[PATH_MAX];
+  double update;
+  vs_error err = {0};
+  pthread_mutex_lock(&s->alive);
+  snprintf(path, sizeof path, "%s/checkpoint", s->folder);
+  if (!s->train || vs_train_save_kept(s->train, path, &update, &err) != VS_OK)
+    fprintf(stderr, "vsss train: %s\n", s->train ? err.text : "nothing to save yet");
+  else
+    fprintf(stderr, "vsss train: saved as it was after update %.0f: --resume %s goes on\n", update, s->folder);
+}
+
 static vs_status run(session *s, vs_error *err) {
-  vs_status status = VS_OK;
-  bool stop = vs_train_done(s->train);
+  bool stop = vs_train_done(s->train) || vs_cli_interrupted();
+  // A run that has learnt nothing yet can be continued, too.
+  vs_status status = s->first ? vs_train_keep(s->train, err) : VS_OK;
+  if (status == VS_OK && s->first && !s->continued) status = save_checkpoint(s, err);
+  if (status == VS_OK) status = vs_group_any(s->group, &stop, err);
   s->start_s = s->checkpoint_s = s->eval_s = now_s();
   vs_progress_start(&s->progress);
   while (status == VS_OK && !stop) {
     status = vs_train_update(s->train, &s->report, err);
+    if (status == VS_OK && s->first) status = vs_train_keep(s->train, err);
     if (status == VS_OK && s->first) status = record(s, err);
     stop = vs_cli_interrupted() || time_is_up(s) || vs_train_done(s->train);
     if (status == VS_OK) status = vs_group_any(s->group, &stop, err);
@@ -242,9 +269,9 @@ static vs_status run(session *s, vs_error *err) {
 
 static vs_status prepare(session *s, const vs_train_def *def, vs_error *err) {
   char path[PATH_MAX];
-  vs_status status = s->first ? make_folder(s->folder, err) : VS_OK;
+  vs_status status = s->first ? vs_run_folder_lock(s->folder, err) : VS_OK;
   snprintf(path, sizeof path, "%s/checkpoint", s->folder);
-  if (status == VS_OK && s->first && (!s->opt->resume || resumes_file(s->opt)) && access(path, F_OK) == 0)
+  if (status == VS_OK && s->first && !s->continued && access(path, F_OK) == 0)
     return vs_fail(err, VS_USAGE, "%s holds a run: continue it with --resume %s, or choose another --run", s->folder,
                    s->folder);
   if (status == VS_OK) status = vs_train_new(def, s->group, &s->train, err);
@@ -254,6 +281,7 @@ static vs_status prepare(session *s, const vs_train_def *def, vs_error *err) {
     status = vs_train_load(s->train, path, note, err);
     if (status == VS_OK && note[0]) printf("%s\n", note);
   }
+  if (status == VS_OK && s->first) status = vs_run_folder_note(s->folder, s->command, s->commit, err);
   if (status != VS_OK || !s->first) return status;
   char text[4096];
   snprintf(path, sizeof path, "%s/settings.ini", s->folder);
@@ -264,15 +292,15 @@ static vs_status prepare(session *s, const vs_train_def *def, vs_error *err) {
 }
 
 static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
-  session s = {.opt = o};
-  snprintf(s.folder, sizeof s.folder, "%s", o->resume && !resumes_file(o) ? o->resume : o->run);
-  size_t used = (size_t)snprintf(s.command, sizeof s.command, "vsss");
-  for (int i = 0; i < argc && used < sizeof s.command; i++)
-    used += (size_t)snprintf(s.command + used, sizeof s.command - used, " %s", argv[i]);
+  static session s; // an interrupt may look at it until the very end
+  s = (session){.opt = o, .alive = PTHREAD_MUTEX_INITIALIZER};
+  s.continued = o->resume && !resumes_file(o);
+  snprintf(s.folder, sizeof s.folder, "%s", s.continued ? o->resume : o->run);
+  vs_run_folder_command(argc, argv, s.command, sizeof s.command);
   find_commit(s.commit, sizeof s.commit);
-  vs_cli_catch_interrupts();
   vs_train_def def;
-  vs_status status = settings(o, &def, err);
+  vs_status status = vs_cli_await_interrupts(announce_stop, save_now, &s, err);
+  if (status == VS_OK) status = settings(o, &def, err);
   if (status == VS_OK) status = vs_group_open(&s.group, err);
   s.first = vs_group_rank(s.group) == 0;
   if (status == VS_OK) status = prepare(&s, &def, err);
@@ -288,6 +316,7 @@ static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
     printf("%s at %.2f M transitions after %.1f min of training: %s/checkpoint, %s/policy.onnx\n",
            vs_train_done(s.train) ? "done" : "stopped", vs_train_transitions(s.train) * 1e-6, s.report.wall_s / 60.0,
            s.folder, s.folder);
+  pthread_mutex_lock(&s.alive); // for good: an interrupt that comes too late waits for the end
   vs_journal_close(s.journal);
   vs_train_free(s.train);
   if (status != VS_OK && s.group) vs_cli_error("train", err); // said now: closing ends this process too

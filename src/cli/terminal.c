@@ -1,6 +1,8 @@
 // What a command shows on a terminal: errors, the progress line; and the interrupts it reacts to.
 #include <math.h>
+#include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -20,19 +22,68 @@ void vs_cli_realtime(int priority) {
   if (vs_realtime_try(priority, &err) != VS_OK) fprintf(stderr, "going on all the same: %s\n", err.text);
 }
 
-static volatile sig_atomic_t interrupted;
+static atomic_bool interrupted;
 
 static void on_interrupt(int number) {
-  interrupted = 1;
+  interrupted = true;
   signal(number, SIG_DFL);
+}
+
+static const int interrupts[] = {SIGINT, SIGTERM, SIGHUP};
+enum { INTERRUPTS = sizeof interrupts / sizeof *interrupts };
+
+// nohup: the program is to outlive its terminal.
+static bool is_kept_from(int number) {
+  struct sigaction now;
+  return number == SIGHUP && sigaction(number, NULL, &now) == 0 && now.sa_handler == SIG_IGN;
 }
 
 void vs_cli_catch_interrupts(void) {
   struct sigaction action;
   memset(&action, 0, sizeof action);
   action.sa_handler = on_interrupt;
-  sigaction(SIGINT, &action, NULL);
-  sigaction(SIGTERM, &action, NULL);
+  for (int i = 0; i < INTERRUPTS; i++)
+    if (!is_kept_from(interrupts[i])) sigaction(interrupts[i], &action, NULL);
+}
+
+static struct {
+  sigset_t set;
+  void (*first)(void *context);
+  void (*second)(void *context);
+  void *context;
+} awaited;
+
+static void *await_interrupts(void *unused) {
+  (void)unused;
+  int number;
+  if (sigwait(&awaited.set, &number) != 0) return NULL;
+  interrupted = true;
+  awaited.first(awaited.context);
+  if (sigwait(&awaited.set, &number) != 0) return NULL;
+  // A third ends the program whatever the second is busy with.
+  for (int i = 0; i < INTERRUPTS; i++) signal(interrupts[i], SIG_DFL);
+  pthread_sigmask(SIG_UNBLOCK, &awaited.set, NULL);
+  awaited.second(awaited.context);
+  _exit(128 + number);
+}
+
+vs_status vs_cli_await_interrupts(void (*first)(void *context), void (*second)(void *context), void *context,
+                                  vs_error *err) {
+  awaited.first = first;
+  awaited.second = second;
+  awaited.context = context;
+  sigemptyset(&awaited.set);
+  for (int i = 0; i < INTERRUPTS; i++)
+    if (!is_kept_from(interrupts[i])) sigaddset(&awaited.set, interrupts[i]);
+  pthread_sigmask(SIG_BLOCK, &awaited.set, NULL);
+  pthread_t thread;
+  int failed = pthread_create(&thread, NULL, await_interrupts, NULL);
+  if (failed) {
+    pthread_sigmask(SIG_UNBLOCK, &awaited.set, NULL);
+    return vs_fail(err, VS_FAIL, "cannot start a thread: %s", strerror(failed));
+  }
+  pthread_detach(thread);
+  return VS_OK;
 }
 
 bool vs_cli_interrupted(void) { return interrupted; }

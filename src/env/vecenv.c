@@ -1,33 +1,28 @@
-// Many matches over threads. Worker 0 is the calling thread; the others live as long as the vecenv and sleep between
-// calls. A match touches only its own state and its own rows, so the order in which matches are taken does not matter.
+// Many matches over threads. A match touches only its own state and its own rows, so the order in which matches are taken
+// does not matter.
 #include "vsss/vecenv.h"
 
 #include <pthread.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "vsss/pool.h"
 
 typedef vs_status (*job_fn)(vs_vecenv *vec, int index, vs_error *err);
 
 struct vs_vecenv {
-  int envs, workers; // workers: started threads beside the caller
+  int envs;
   uint64_t seed;
   vs_env **env;
   uint64_t *episode;                                      // of each match
   bool (*external)[VS_TEAMS], (*next_external)[VS_TEAMS]; // now, from the next episode on
-  pthread_t *thread;
-
-  pthread_mutex_t lock;
-  pthread_cond_t start, finish;
-  unsigned round; // counts the jobs handed out
-  int busy;       // workers still in this round
-  bool quit;
+  vs_pool *pool;
 
   job_fn job;
   const vs_vecenv_buffers *buffers;
-  atomic_int next; // match to take
-  int failed;      // lowest match that failed in this round, or envs
-  vs_error error;  // of that match
+  pthread_mutex_t lock;
+  int failed;     // lowest match that failed in this round, or envs
+  vs_error error; // of that match
 };
 
 static void note_failure(vs_vecenv *vec, int index, const vs_error *error) {
@@ -39,46 +34,18 @@ static void note_failure(vs_vecenv *vec, int index, const vs_error *error) {
   pthread_mutex_unlock(&vec->lock);
 }
 
-static void take_matches(vs_vecenv *vec) {
-  for (;;) {
-    int index = atomic_fetch_add(&vec->next, 1);
-    if (index >= vec->envs) return;
-    vs_error error = {0};
-    if (vec->job(vec, index, &error) != VS_OK) note_failure(vec, index, &error);
-  }
-}
-
-static void *worker(void *argument) {
-  vs_vecenv *vec = argument;
-  unsigned seen = 0;
-  pthread_mutex_lock(&vec->lock);
-  for (;;) {
-    while (vec->round == seen && !vec->quit) pthread_cond_wait(&vec->start, &vec->lock);
-    if (vec->quit) break;
-    seen = vec->round;
-    pthread_mutex_unlock(&vec->lock);
-    take_matches(vec);
-    pthread_mutex_lock(&vec->lock);
-    if (--vec->busy == 0) pthread_cond_signal(&vec->finish);
-  }
-  pthread_mutex_unlock(&vec->lock);
-  return NULL;
+static void do_match(void *context, int index, int thread) {
+  (void)thread;
+  vs_vecenv *vec = context;
+  vs_error error = {0};
+  if (vec->job(vec, index, &error) != VS_OK) note_failure(vec, index, &error);
 }
 
 static vs_status run(vs_vecenv *vec, job_fn job, const vs_vecenv_buffers *buffers, vs_error *err) {
-  pthread_mutex_lock(&vec->lock);
   vec->job = job;
   vec->buffers = buffers;
   vec->failed = vec->envs;
-  atomic_store(&vec->next, 0);
-  vec->busy = vec->workers;
-  vec->round++;
-  pthread_cond_broadcast(&vec->start);
-  pthread_mutex_unlock(&vec->lock);
-  take_matches(vec);
-  pthread_mutex_lock(&vec->lock);
-  while (vec->busy > 0) pthread_cond_wait(&vec->finish, &vec->lock);
-  pthread_mutex_unlock(&vec->lock);
+  vs_pool_run(vec->pool, vec->envs, do_match, vec);
   if (vec->failed == vec->envs) return VS_OK;
   return vs_fail(err, vec->error.status, "%s", vec->error.text);
 }
@@ -153,22 +120,12 @@ static vs_status open_matches(vs_vecenv *vec, const vs_vecenv_def *def, vs_error
   vec->episode = calloc((size_t)def->envs, sizeof *vec->episode);
   vec->external = calloc((size_t)def->envs, sizeof *vec->external);
   vec->next_external = calloc((size_t)def->envs, sizeof *vec->next_external);
-  vec->thread = calloc((size_t)def->threads, sizeof *vec->thread);
-  if (!vec->env || !vec->episode || !vec->external || !vec->next_external || !vec->thread)
+  if (!vec->env || !vec->episode || !vec->external || !vec->next_external)
     return vs_fail(err, VS_FAIL, "out of memory for %d matches", def->envs);
   for (int i = 0; i < def->envs; i++) {
     vs_status s = vs_env_new(&def->env, &vec->env[i], err);
     if (s != VS_OK) return s;
     for (int t = 0; t < VS_TEAMS; t++) vec->external[i][t] = vec->next_external[i][t] = !def->env.player[t];
-  }
-  return VS_OK;
-}
-
-static vs_status start_workers(vs_vecenv *vec, int threads, vs_error *err) {
-  for (int i = 1; i < threads; i++) {
-    int error = pthread_create(&vec->thread[vec->workers], NULL, worker, vec);
-    if (error) return vs_fail(err, VS_FAIL, "cannot start thread %d: %s", i, strerror(error));
-    vec->workers++;
   }
   return VS_OK;
 }
@@ -181,10 +138,8 @@ vs_status vs_vecenv_new(const vs_vecenv_def *def, vs_vecenv **out, vs_error *err
   vec->seed = def->seed;
   vec->envs = def->envs;
   pthread_mutex_init(&vec->lock, NULL);
-  pthread_cond_init(&vec->start, NULL);
-  pthread_cond_init(&vec->finish, NULL);
   vs_status s = open_matches(vec, def, err);
-  if (s == VS_OK) s = start_workers(vec, def->threads, err);
+  if (s == VS_OK) s = vs_pool_new(def->threads, &vec->pool, err);
   if (s != VS_OK) {
     vs_vecenv_free(vec);
     return s;
@@ -195,20 +150,13 @@ vs_status vs_vecenv_new(const vs_vecenv_def *def, vs_vecenv **out, vs_error *err
 
 void vs_vecenv_free(vs_vecenv *vec) {
   if (!vec) return;
-  pthread_mutex_lock(&vec->lock);
-  vec->quit = true;
-  pthread_cond_broadcast(&vec->start);
-  pthread_mutex_unlock(&vec->lock);
-  for (int i = 0; i < vec->workers; i++) pthread_join(vec->thread[i], NULL);
+  vs_pool_free(vec->pool);
   for (int i = 0; vec->env && i < vec->envs; i++) vs_env_free(vec->env[i]);
-  pthread_cond_destroy(&vec->start);
-  pthread_cond_destroy(&vec->finish);
   pthread_mutex_destroy(&vec->lock);
   free(vec->env);
   free(vec->episode);
   free(vec->external);
   free(vec->next_external);
-  free(vec->thread);
   free(vec);
 }
 

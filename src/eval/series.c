@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "vsss/pool.h"
+
 void vs_match_count(vs_match_result *result, const vs_event *event) { result->events[event->team][event->kind]++; }
 
 vs_status vs_match_play(vs_env *env, uint64_t seed, bool (*go_on)(void *context), void *context, vs_match_result *out,
@@ -69,13 +71,16 @@ static void report(series *s, int index) {
   pthread_mutex_unlock(&s->lock);
 }
 
-static void *play(void *argument) {
-  series *s = argument;
+// What one thread does: matches, in an env of its own, until none is left.
+static void play(void *context, int piece, int thread) {
+  (void)piece;
+  (void)thread;
+  series *s = context;
   vs_error error = {0};
   vs_env *env = NULL;
   if (vs_env_new(&s->def->env, &env, &error) != VS_OK) {
     stop_with(s, &error);
-    return NULL;
+    return;
   }
   for (int index; (index = take(s)) >= 0;) {
     vs_match_result *result = &s->results[index];
@@ -87,7 +92,6 @@ static void *play(void *argument) {
     if (result->played) report(s, index);
   }
   vs_env_free(env);
-  return NULL;
 }
 
 vs_status vs_series_play(const vs_series_def *def, vs_match_result *results, vs_error *err) {
@@ -95,23 +99,13 @@ vs_status vs_series_play(const vs_series_def *def, vs_match_result *results, vs_
   if (def->threads < 1) return vs_fail(err, VS_USAGE, "threads %d: at least 1", def->threads);
   memset(results, 0, (size_t)def->matches * sizeof *results);
   int threads = def->threads < def->matches ? def->threads : def->matches;
-  pthread_t *thread = calloc((size_t)threads, sizeof *thread);
-  if (!thread) return vs_fail(err, VS_FAIL, "out of memory for %d threads", threads);
-
+  vs_pool *pool = NULL;
+  vs_status status = vs_pool_new(threads, &pool, err);
+  if (status != VS_OK) return status;
   series s = {.def = def, .results = results};
   pthread_mutex_init(&s.lock, NULL);
-  int started = 0;
-  for (; started < threads - 1; started++) {
-    int error = pthread_create(&thread[started], NULL, play, &s);
-    if (error == 0) continue;
-    vs_error failed = {0};
-    vs_fail(&failed, VS_FAIL, "cannot start thread %d: %s", started + 1, strerror(error));
-    stop_with(&s, &failed);
-    break;
-  }
-  play(&s); // the caller's own share
-  for (int i = 0; i < started; i++) pthread_join(thread[i], NULL);
+  vs_pool_run(pool, threads, play, &s);
   pthread_mutex_destroy(&s.lock);
-  free(thread);
+  vs_pool_free(pool);
   return s.error.status == VS_OK ? VS_OK : vs_fail(err, s.error.status, "%s", s.error.text);
 }

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "vsss/signals.h"
+
 // Values of CBLAS (netlib's cblas.h).
 enum { ROW_MAJOR = 101, PLAIN = 111, TRANSPOSED = 112 };
 
@@ -79,12 +81,18 @@ vs_status vs_blas_open(vs_blas *out, vs_blas_library which, vs_error *err) {
 #endif
 }
 
-// oneDNN works on the calling thread alone from here on; returns how many OpenMP gave it, for whoever else uses OpenMP
-// on this thread (libtorch).
-static int single_thread(const vs_blas *blas) {
+// oneDNN works on the calling thread alone from here on, and no signal disturbs it; returns how many threads OpenMP gave
+// it, for whoever else uses OpenMP on this thread (libtorch).
+static int begin_product(const vs_blas *blas) {
+  vs_signals_hold();
   int threads = blas->max_threads();
   blas->set_threads(1);
   return threads;
+}
+
+static void end_product(const vs_blas *blas, int threads) {
+  blas->set_threads(threads);
+  vs_signals_release();
 }
 
 // A product that failed (out of memory) must not pass for one: what is learnt from it is then not finite.
@@ -101,19 +109,19 @@ void vs_blas_multiply(const vs_blas *blas, bool transpose_a, bool transpose_b, i
                       lda, b, ldb, beta, c, ldc);
     return;
   }
-  int threads = single_thread(blas);
+  int threads = begin_product(blas);
   if (blas->dnnl_sgemm(transpose_a ? 'T' : 'N', transpose_b ? 'T' : 'N', m, n, k, 1.0f, a, lda, b, ldb, beta, c, ldc))
     spoil(m, n, c, ldc);
-  blas->set_threads(threads);
+  end_product(blas, threads);
 }
 
 bool vs_blas_has_bf16(const vs_blas *blas) { return blas->dnnl_bf16 != NULL; }
 
 void vs_blas_multiply_bf16(const vs_blas *blas, bool transpose_a, bool transpose_b, int m, int n, int k,
                            const uint16_t *a, int lda, const uint16_t *b, int ldb, bool accumulate, float *c, int ldc) {
-  int threads = single_thread(blas);
+  int threads = begin_product(blas);
   if (blas->dnnl_bf16(transpose_a ? 'T' : 'N', transpose_b ? 'T' : 'N', m, n, k, 1.0f, a, lda, b, ldb,
                       accumulate ? 1.0f : 0.0f, c, ldc))
     spoil(m, n, c, ldc);
-  blas->set_threads(threads);
+  end_product(blas, threads);
 }

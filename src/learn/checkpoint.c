@@ -1,5 +1,6 @@
 // Saves and restores a training run, bit for bit.
 #include <limits.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,34 +70,69 @@ static void save_learner(const vs_train *train, vs_bytes *out) {
   vs_archive_section(out, "square", l->square, l->net.size * sizeof(float));
 }
 
-vs_status vs_train_save_slim(const vs_train *train, const char *path, vs_error *err) {
-  vs_bytes out = {0};
-  save_learner(train, &out);
-  return vs_archive_write(&out, path, err);
-}
-
-vs_status vs_train_save(const vs_train *train, const char *path, vs_error *err) {
-  vs_bytes out = {0};
-  save_learner(train, &out);
-  save_league(&train->league, &out);
-  vs_archive_section(&out, "observation", train->rollout.io.observation,
+static vs_status add_matches(const vs_train *train, vs_bytes *out, vs_error *err) {
+  vs_archive_section(out, "observation", train->rollout.io.observation,
                      (size_t)VS_VECENV_ROWS(train->def.envs) * VS_OBS_SIZE * sizeof(float));
   size_t size = train->matches.state_size(train->matches.self);
-  if (size == 0) {
-    vs_bytes_free(&out);
-    return vs_fail(err, VS_FAIL, "%s: an opponent of this run cannot be saved", path);
-  }
+  if (size == 0) return vs_fail(err, VS_FAIL, "an opponent of this run cannot be saved");
   // Aligned as malloc'd memory is: the matches may keep doubles and vectors in it.
   void *state = aligned_alloc(64, (size + 63) / 64 * 64);
-  if (!state) {
-    vs_bytes_free(&out);
-    return vs_fail(err, VS_FAIL, "%s: out of memory", path);
-  }
+  if (!state) return vs_fail(err, VS_FAIL, "out of memory for a checkpoint");
   memset(state, 0, size);
   train->matches.save(train->matches.self, state);
-  vs_archive_section(&out, "matches", state, size);
+  vs_archive_section(out, "matches", state, size);
   free(state);
-  return vs_archive_write(&out, path, err);
+  return VS_OK;
+}
+
+// All of a run. Before its first update there are no matches yet, and the networks alone are all.
+static vs_status save_whole(const vs_train *train, vs_bytes *out, vs_error *err) {
+  save_learner(train, out);
+  if (!train->started) return VS_OK;
+  save_league(&train->league, out);
+  return add_matches(train, out, err);
+}
+
+// Two threads may want to write a checkpoint: the one that trains, and the one that an interrupt woke.
+static vs_status write_alone(vs_train *train, vs_bytes *archive, const char *path, vs_error *err) {
+  pthread_mutex_lock(&train->kept.lock);
+  vs_status s = vs_archive_write(archive, path, err);
+  pthread_mutex_unlock(&train->kept.lock);
+  return s;
+}
+
+vs_status vs_train_save_slim(vs_train *train, const char *path, vs_error *err) {
+  vs_bytes out = {0};
+  save_learner(train, &out);
+  return write_alone(train, &out, path, err);
+}
+
+vs_status vs_train_save(vs_train *train, const char *path, vs_error *err) {
+  vs_bytes out = {0};
+  vs_status s = save_whole(train, &out, err);
+  if (s == VS_OK) return write_alone(train, &out, path, err);
+  vs_bytes_free(&out);
+  return vs_fail_prefix(err, "%s", path);
+}
+
+vs_status vs_train_keep(vs_train *train, vs_error *err) {
+  pthread_mutex_lock(&train->kept.lock);
+  train->kept.state.size = 0; // what it holds is overwritten in place
+  vs_status s = save_whole(train, &train->kept.state, err);
+  if (s == VS_OK && train->kept.state.failed) s = vs_fail(err, VS_FAIL, "out of memory for a checkpoint");
+  if (s != VS_OK) vs_bytes_free(&train->kept.state);
+  train->kept.update = (double)train->updates;
+  pthread_mutex_unlock(&train->kept.lock);
+  return s;
+}
+
+vs_status vs_train_save_kept(vs_train *train, const char *path, double *update, vs_error *err) {
+  pthread_mutex_lock(&train->kept.lock);
+  vs_status s = train->kept.state.size ? vs_archive_write(&train->kept.state, path, err)
+                                       : vs_fail(err, VS_FAIL, "%s: nothing to save yet", path);
+  if (update) *update = train->kept.update;
+  pthread_mutex_unlock(&train->kept.lock);
+  return s;
 }
 
 // Opens path, or path.previous where path is damaged or missing; used gets the name of the one that was read.
@@ -191,13 +227,14 @@ static vs_status load_league(vs_league *l, const vs_bytes *archive, const char *
 
 static vs_status load_matches(vs_train *t, const vs_bytes *archive, const char *path, vs_error *err) {
   const void *data;
-  size_t size = t->matches.state_size(t->matches.self);
-  vs_status s = vs_archive_find(archive, path, "matches", size, &data, NULL, err);
+  // Matches are restored into ones that have started (their players are there from then on), from aligned memory.
+  vs_status s = t->matches.reset(t->matches.self, &t->rollout.io, err);
   if (s != VS_OK) return s;
-  // Matches are restored into ones that have started, from aligned memory.
-  s = t->matches.reset(t->matches.self, &t->rollout.io, err);
+  size_t size = t->matches.state_size(t->matches.self);
+  s = vs_archive_find(archive, path, "matches", size, &data, NULL, err);
+  if (s != VS_OK) return s;
   void *state = aligned_alloc(64, (size + 63) / 64 * 64);
-  if (s == VS_OK && !state) s = vs_fail(err, VS_FAIL, "%s: out of memory", path);
+  if (!state) s = vs_fail(err, VS_FAIL, "%s: out of memory", path);
   if (s == VS_OK) {
     memcpy(state, data, size);
     t->matches.restore(t->matches.self, state);

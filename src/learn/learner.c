@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "kernels.h"
+#include "vsss/signals.h"
 
 // BLOCK: the fastest of 128 to 1070 rows at the paper's sizes (make bench N=learn): what a product leaves is mostly still
 // in the second-level cache when the next step reads it.
@@ -186,8 +187,10 @@ static vs_status engine_gradient(const job *j, vs_ppo_stats *stats, vs_error *er
     int count = j->count - from < l->part[0].capacity ? j->count - from : l->part[0].capacity;
     gather(j, &l->part[0], j->rows + from, count);
     const vs_ppo_batch batch = gathered(&l->part[0], count);
+    vs_signals_hold(); // its products may be oneDNN's
     s = l->engine->gradient(l->engine->self, &l->net, &l->def.ppo, l->parameters, &batch, j->total_rows,
                             l->part[0].gradient, stats, err);
+    vs_signals_release();
     vs_kernel_add(l->gradient, l->part[0].gradient, l->net.size);
   }
   return s;

@@ -6,8 +6,8 @@
 #include "blas.h"
 #include "group.h"
 #include "net.h"
-#include "pool.h"
 #include "ppo.h"
+#include "vsss/pool.h"
 #include "vsss/rng.h"
 
 // What the products of the backward pass are of. AUTO: bfloat16 where oneDNN and the processor have it.

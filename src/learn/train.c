@@ -86,6 +86,7 @@ vs_status vs_train_new_over(const vs_train_def *def, const vs_matches *matches, 
   *out = NULL;
   vs_train *t = calloc(1, sizeof *t);
   if (!t) return vs_fail(err, VS_FAIL, "out of memory");
+  pthread_mutex_init(&t->kept.lock, NULL);
   t->def = *def;
   if (matches) t->matches = *matches;
   t->group = group;
@@ -117,6 +118,8 @@ void vs_train_free(vs_train *train) {
   vs_learner_free(&train->learner);
   vs_pool_free(train->pool);
   if (train->matches.free) train->matches.free(train->matches.self);
+  vs_bytes_free(&train->kept.state);
+  pthread_mutex_destroy(&train->kept.lock);
   free(train->actor);
   free(train);
 }

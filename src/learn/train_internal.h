@@ -2,7 +2,10 @@
 #ifndef VSSS_LEARN_TRAIN_INTERNAL_H
 #define VSSS_LEARN_TRAIN_INTERNAL_H
 
+#include <pthread.h>
+
 #include "rollout.h"
+#include "wire.h"
 #include "vsss/learn.h"
 
 struct vs_train {
@@ -20,6 +23,11 @@ struct vs_train {
   long long updates, transitions;
   double wall_s;
   bool started; // the matches were reset or restored
+  struct {
+    pthread_mutex_t lock; // over state, and over all writing of checkpoints
+    vs_bytes state;       // a checkpoint, or empty
+    double update;
+  } kept; // vs_train_keep
 };
 
 // A run over other matches than the simulator's (tests); takes them over, also on failure.

@@ -91,6 +91,28 @@ static void a_small_checkpoint_begins_a_new_run(void **state) {
   assert_int_equal(lines(content("%s/b/progress.csv")), 1 + 4); // the old one is as it was
 }
 
+// Every kind of player: what it remembers is part of the checkpoint.
+static void a_run_against_any_player_continues(void **state) {
+  (void)state;
+  static const char *const players[] = {"emc:",
+                                        "emc:?pid=1",
+                                        "inf:",
+                                        "emc22:",
+                                        "random:",
+                                        "zero:",
+                                        "onnx:build/untrained.onnx",
+                                        "self=0.5,emc:=0.3,frozen=0.2"};
+  for (size_t i = 0; i < sizeof players / sizeof *players; i++) {
+    char format[512];
+    snprintf(format, sizeof format, "rm -rf '%s/o'", folder);
+    assert_int_equal(system(format), 0);
+    snprintf(format, sizeof format, "train --run %%s/o " SMALL "--transitions 0.0003 --opponent '%s'", players[i]);
+    train(format);
+    train("train --resume %s/o --transitions 0.0006");
+    assert_int_equal(run.err[0], '\0');
+  }
+}
+
 static void interrupting_a_run_saves_it(void **state) {
   (void)state;
   vsss_interrupt(&run, with_folder("train --run %s/i " SMALL), "training in");
@@ -221,6 +243,7 @@ int main(void) {
       cmocka_unit_test(a_run_leaves_checkpoint_policy_tables_and_continues),
       cmocka_unit_test(two_runs_of_one_seed_are_the_same),
       cmocka_unit_test(a_small_checkpoint_begins_a_new_run),
+      cmocka_unit_test(a_run_against_any_player_continues),
       cmocka_unit_test(interrupting_a_run_saves_it),
       cmocka_unit_test(evaluation_is_written_beside_the_progress),
       cmocka_unit_test(a_script_is_imitated_before_the_run),

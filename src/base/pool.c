@@ -1,8 +1,11 @@
-#include "pool.h"
+#include "vsss/pool.h"
 
 #include <pthread.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "vsss/signals.h"
 
 struct helper {
   vs_pool *pool;
@@ -60,9 +63,14 @@ vs_status vs_pool_new(int threads, vs_pool **out, vs_error *err) {
   for (; pool->helpers < threads - 1; pool->helpers++) {
     struct helper *h = &pool->helper[pool->helpers];
     *h = (struct helper){.pool = pool, .number = pool->helpers + 1};
-    if (pthread_create(&h->thread, NULL, help, h) != 0) {
+    vs_signals_hold(); // the helper inherits that for good
+    int failed = pthread_create(&h->thread, NULL, help, h);
+    vs_signals_release();
+    if (failed) {
+      vs_status s = vs_fail(err, VS_FAIL, "cannot start thread %d of %d: %s; lower threads", pool->helpers + 2, threads,
+                            strerror(failed));
       vs_pool_free(pool);
-      return vs_fail(err, VS_FAIL, "cannot start thread %d of %d", pool->helpers + 2, threads);
+      return s;
     }
   }
   *out = pool;

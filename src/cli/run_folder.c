@@ -1,0 +1,77 @@
+#include "run_folder.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/file.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "vsss/paths.h"
+
+static void host_name(char *out, size_t size) {
+  if (gethostname(out, size) != 0) snprintf(out, size, "unknown");
+  out[size - 1] = '\0';
+}
+
+vs_status vs_run_folder_lock(const char *folder, vs_error *err) {
+  char path[PATH_MAX], text[256], host[128];
+  vs_status s = vs_path_make_folder(folder, 0755, err);
+  if (s != VS_OK) return s;
+  snprintf(path, sizeof path, "%s/lock", folder);
+  int file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0644); // closed by the process's end, and the lock with it
+  if (file < 0) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
+  if (flock(file, LOCK_EX | LOCK_NB) != 0) {
+    ssize_t n = errno == EWOULDBLOCK ? read(file, text, sizeof text - 1) : -1;
+    s = n < 0 ? vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno))
+              : vs_fail(err, VS_USAGE, "%s: %.*s trains in it: wait for its end, or choose another --run", folder,
+                        (int)strcspn((text[n] = '\0', text), "\n"), text);
+    close(file);
+    return s;
+  }
+  host_name(host, sizeof host);
+  int n = snprintf(text, sizeof text, "process %ld on %s\n", (long)getpid(), host);
+  if (ftruncate(file, 0) != 0 || write(file, text, (size_t)n) != n)
+    return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
+  return VS_OK;
+}
+
+static void add(char *out, size_t size, char c) {
+  size_t used = strlen(out);
+  if (used + 1 < size) out[used] = c, out[used + 1] = '\0';
+}
+
+static void add_word(char *out, size_t size, const char *word) {
+  static const char *const plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
+  bool quoted = !*word || word[strspn(word, plain)];
+  add(out, size, ' ');
+  if (quoted) add(out, size, '\'');
+  for (; *word; word++) {
+    if (*word == '\'') // ends the quotation, adds a quote, begins anew
+      add(out, size, '\''), add(out, size, '\\'), add(out, size, '\'');
+    add(out, size, *word);
+  }
+  if (quoted) add(out, size, '\'');
+}
+
+void vs_run_folder_command(int argc, char **argv, char *out, size_t size) {
+  snprintf(out, size, "vsss");
+  for (int i = 0; i < argc; i++) add_word(out, size, argv[i]);
+}
+
+vs_status vs_run_folder_note(const char *folder, const char *command, const char *commit, vs_error *err) {
+  char path[PATH_MAX], when[64], host[128];
+  time_t now = time(NULL);
+  struct tm utc;
+  strftime(when, sizeof when, "%Y-%m-%d %H:%M:%S UTC", gmtime_r(&now, &utc));
+  host_name(host, sizeof host);
+  snprintf(path, sizeof path, "%s/history.txt", folder);
+  FILE *f = fopen(path, "a");
+  if (!f) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
+  fprintf(f, "%s  host %s, %ld processors, commit %s\n  %s\n", when, host, sysconf(_SC_NPROCESSORS_ONLN), commit,
+          command);
+  return fclose(f) == 0 ? VS_OK : vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
+}

@@ -1,0 +1,17 @@
+// The folder of a training run: one training at a time, and who trained in it, when, where, with what command.
+#ifndef VSSS_CLI_RUN_FOLDER_H
+#define VSSS_CLI_RUN_FOLDER_H
+
+#include <stddef.h>
+
+#include "vsss/status.h"
+
+// Makes the folder where it is not there and locks it for as long as this process lives: lock holds who has it, and a
+// second training is refused with that.
+vs_status vs_run_folder_lock(const char *folder, vs_error *err);
+// The command line, quoted where a shell needs it so.
+void vs_run_folder_command(int argc, char **argv, char *out, size_t size);
+// Adds to folder/history.txt when and where this program was started, its commit and the command line.
+vs_status vs_run_folder_note(const char *folder, const char *command, const char *commit, vs_error *err);
+
+#endif
