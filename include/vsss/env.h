@@ -14,12 +14,21 @@ extern "C" {
 
 typedef struct vs_env vs_env;
 
+// What training episodes begin with and how long their ball may lie still, drawn for each episode. All zeros: a kick-off
+// by referee.kick_off and referee.still_s, as in a match.
+typedef struct vs_episode_def {
+  double open_play, penalty, free_ball; // shares of episodes that begin so, for either team; the rest kick off
+  double still_low_s, still_high_s;     // range of referee.still_s; high 0: as it is
+  bool either_kicks_off;                // kick-offs by a team drawn at random
+} vs_episode_def;
+
 typedef struct vs_env_def {
   const vs_model *model;        // shared, outlives the env
   const char *player[VS_TEAMS]; // URI, or NULL: an external team whose actions the caller gives
   vs_referee_def referee;
   vs_realism realism;
   bool shuffle_adversaries; // training
+  vs_episode_def episode;   // training
 } vs_env_def;
 
 vs_env_def vs_env_def_default(const vs_model *model); // paper rules, paper noise, 120 s, both teams external

@@ -21,6 +21,8 @@ typedef struct vs_train_def {
   char realism[256];  // INI file of sensors and dynamics; empty: the paper's noise only
   char placement[16]; // random or paper
   double episode_s;
+  double still_low_s, still_high_s;                  // how long the ball may lie still, drawn for each episode
+  double start_open, start_penalty, start_free_ball; // shares of episodes that begin so; the rest kick off
   int envs, steps; // matches side by side; decisions of each per update
   int threads;
   int seed;
@@ -40,7 +42,9 @@ typedef struct vs_train_def {
   double learning_rate, learning_rate_end; // linear over transitions_m
   double adam_epsilon, max_gradient_norm;
   int epochs, minibatch, pieces;
-  char hidden[64]; // layer sizes, such as "256,256"
+  bool canonical;     // the networks see one of the 24 symmetric versions of an observation (vsss/observe.h)
+  double action_gain; // action = action_gain times what the policy draws from [-1, 1], clipped
+  char hidden[64];    // layer sizes, such as "256,256"
   double first_shape;
   char learner[16]; // own or torch
   // Of the products in the own learner's backward pass: fp32, bf16 (needs oneDNN and AVX512-BF16), or auto (bf16 where

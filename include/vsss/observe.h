@@ -30,6 +30,23 @@ void vs_observer_restart(vs_observer *observer); // after a (re)start of play: k
 void vs_observer_push(vs_observer *observer, const vs_world *view, const vs_game *game, const float *last_action);
 void vs_observer_write(const vs_observer *observer, float *out /* [VS_TEAM_SIZE][VS_OBS_SIZE], oldest frame first */);
 
+// The symmetries of one robot's observation: the field mirrored left to right (y, sines and angles change their sign,
+// the wheels change places), the two allies exchanged, the three adversaries in any order. The canonical one of the 24
+// versions, judged by the newest frame, shows the ball at y >= 0, the ally nearer to the ball first and the adversaries
+// by their distance. A policy of canonical observations plays every situation as it plays its mirror image.
+#define VS_SYMMETRIES (2 * 2 * 6)
+typedef struct vs_symmetry_table {
+  // Version s of a frame: value k is sign[s][k] times value index[s][k] of the original.
+  int index[VS_SYMMETRIES][VS_OBS_FRAME];
+  float sign[VS_SYMMETRIES][VS_OBS_FRAME];
+} vs_symmetry_table;
+
+// Versions are numbered (mirrored * 2 + allies exchanged) * 6 + order of the adversaries.
+void vs_symmetry_table_init(vs_symmetry_table *table);
+int vs_symmetry_canonical(const float *observation /* [VS_OBS_SIZE] */); // the version that is canonical
+void vs_symmetry_apply(const vs_symmetry_table *table, int version, const float *observation, float *out);
+static inline int vs_symmetry_mirrored(int version) { return version / 12; } // 1: left and right wheel change places
+
 // Action in [-1, 1] <-> rad/s. A value that is not finite is VS_FAIL naming robot and wheel; others are clamped.
 vs_status vs_action_to_wheels(const float *action /* [3][2] */, vs_wheels out[VS_TEAM_SIZE], vs_error *err);
 void vs_action_from_wheels(const vs_wheels wheels[VS_TEAM_SIZE], float *action);

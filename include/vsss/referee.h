@@ -35,6 +35,7 @@ typedef struct vs_referee_def {
   bool end_at_first_goal;   // training episodes
   int halves;               // 1 (paper) or 2 (league); sides are not changed
   vs_team kick_off;         // who begins
+  double still_s;           // paper's rules: a free ball after so long; VS_STILL_S
 } vs_referee_def;
 
 vs_referee_def vs_referee_def_default(vs_rules rules); // a match: paper 120 s, league 2 x 300 s
@@ -70,6 +71,11 @@ void vs_referee_restarted(vs_referee *referee, const vs_world *world);
 // penalty, stands on its line pointed straight at the ball. RANDOM: the ball where the restart puts it, robots anywhere
 // the rules allow, roles and headings random. Events without a placement (NONE, END, HALT) give before itself.
 void vs_place(vs_placement_mode mode, const vs_event *event, const vs_world *before, vs_rng *rng, vs_world *out);
+
+// Open play, for the starts of training episodes: robots anywhere with any heading, the ball anywhere outside the areas
+// (a third of the time at a wall or in a corner) and, but for those, rolling at up to VS_OPEN_PLAY_MPS.
+#define VS_OPEN_PLAY_MPS 1.0
+void vs_place_open_play(const vs_world *before, vs_rng *rng, vs_world *out);
 
 vs_status vs_rules_parse(const char *name, vs_rules *out, vs_error *err);              // "paper", "league"
 vs_status vs_placement_parse(const char *name, vs_placement_mode *out, vs_error *err); // "paper", "random"

@@ -1,6 +1,6 @@
 // Reward: terms first, then the weighted sum (paper, equations 6 to 16). Team view throughout.
 //
-// Universal terms are the same for the three robots of a team (speed, distance, goal, foul, progress), specific ones are
+// Universal terms are the same for the three robots of a team (speed, distance, goal, foul, progress, still), specific ones are
 // each robot's own (offence, defence, approach, own distance). A goal or a penalty foul replaces all others, for every
 // robot of the team.
 #ifndef VSSS_REWARD_H
@@ -22,9 +22,10 @@ typedef enum vs_reward_term {
   VS_REWARD_DEFENCE,  // psi(ball, robot, O)/pi - 1: 0 with the robot straight between ball and own goal
   VS_REWARD_GOAL,     // (1 + (T-t)/T) when this team scores, minus that when it concedes; t is the event's time
   VS_REWARD_FOUL,     // -1 when this team's foul gave the adversary a penalty
-  VS_REWARD_PROGRESS, // clip((d[t-1] - d[t])/0.14, -1, 1): speed without the offset
+  VS_REWARD_PROGRESS, // (d[t-1] - d[t])/0.14: a potential, what the ball gains it loses on its way back
   VS_REWARD_APPROACH, // this robot's way towards the ball in this decision, m / 0.14, clipped to [-1, 1]
   VS_REWARD_OWN_DISTANCE, // -min(1, this robot's distance to the ball in m)
+  VS_REWARD_STILL,        // -1 while the ball moves less than VS_REWARD_STILL_M in a decision
   VS_REWARD_TERMS
 } vs_reward_term;
 
@@ -32,6 +33,8 @@ typedef enum vs_reward_term {
 #define VS_REWARD_STEP_M   0.14
 #define VS_REWARD_OFFSET_M 0.05
 #define VS_REWARD_GOAL_X_M 0.75
+// A ball slower than 0.1 m/s is one that the league's referee calls stuck (VS_LEAGUE_STUCK_MPS).
+#define VS_REWARD_STILL_M 0.01
 
 typedef struct vs_reward_weights {
   double weight[VS_REWARD_TERMS];

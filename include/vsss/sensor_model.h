@@ -23,6 +23,7 @@ typedef struct vs_range {
 
 typedef struct vs_realism {
   bool noise;                                      // the paper's noise at all
+  double ideal_share;                              // of the episodes have the default instead of this; 0
   vs_range noise_scale;                            // 1
   vs_range position_bias_m, heading_bias_rad;      // size of a constant offset, in a random direction; 0
   vs_range position_scale;                         // 1
@@ -36,7 +37,8 @@ typedef struct vs_realism {
 } vs_realism;
 
 vs_realism vs_realism_default(void); // the paper's noise only
-// INI over the default: one section per range of the struct with keys low and high; noise = true or false at the top.
+// INI over the default: one section per range of the struct with keys low and high; noise = true or false and
+// ideal_share = 0 to 1 at the top.
 vs_status vs_realism_load(const char *path, vs_realism *out, vs_error *err);
 // The simulator's parameters of the episode with this seed.
 vs_sim_params vs_realism_draw(const vs_realism *realism, uint64_t seed);

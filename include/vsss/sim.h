@@ -57,7 +57,7 @@ vs_status vs_sim_new(const vs_model *model, vs_sim **out, vs_error *err);
 void vs_sim_free(vs_sim *sim);
 void vs_sim_reset(vs_sim *sim,
                   const vs_sim_params *params /* NULL: default */); // time 0, everything at rest, kick-off line
-// Puts robots and ball where world says, at rest; wheels stopped. Time goes on. No allocation, under 50 us.
+// Puts robots and ball where world says, robots at rest, wheels stopped, the ball rolling as fast as world says. Time goes on. No allocation, under 50 us.
 void vs_sim_place(vs_sim *sim, const vs_world *world);
 // One camera frame (1/30 s) with the commands held. VS_FAIL: MuJoCo reported a warning (NaN, too many contacts), by name.
 vs_status vs_sim_frame(vs_sim *sim, const vs_wheels command[VS_TEAMS][VS_TEAM_SIZE], vs_error *err);

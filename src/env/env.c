@@ -8,7 +8,7 @@
 #define FRAME_S             (1.0 / VS_CAMERA_HZ)
 
 // Streams and parts of a match's seed, one for each thing that draws from it.
-enum { SEED_SENSORS = 1, SEED_PLACEMENT, SEED_PLAYER };
+enum { SEED_SENSORS = 1, SEED_PLACEMENT, SEED_PLAYER, SEED_EPISODE = SEED_PLAYER + VS_TEAMS };
 
 // All of a match that is plain data. Beside it stand the simulator's and the two controls' own states.
 typedef struct match {
@@ -92,17 +92,41 @@ static void measure(vs_env *env) {
       vs_control_observe(env->control[t], (vs_team)t, &m->measured, &m->referee.game);
 }
 
-// Puts the pieces where the restart wants them; play goes on with a decision.
-static void place(vs_env *env, const vs_event *event) {
+// Puts the pieces where placed says; play goes on with a decision.
+static void put(vs_env *env, const vs_world *placed) {
   match *m = &env->m;
-  vs_world placed = m->truth;
-  vs_place(m->referee.def.placement, event, &m->truth, &m->placement, &placed);
-  vs_sim_place(env->sim, &placed);
+  vs_sim_place(env->sim, placed);
   vs_sim_world(env->sim, &m->truth);
   vs_referee_restarted(&m->referee, &m->truth);
   for (int t = 0; t < VS_TEAMS; t++) vs_control_restart(env->control[t]);
   memset(m->wheels, 0, sizeof m->wheels);
   m->tick = 0;
+}
+
+// Puts the pieces where the restart wants them.
+static void place(vs_env *env, const vs_event *event) {
+  match *m = &env->m;
+  vs_world placed = m->truth;
+  vs_place(m->referee.def.placement, event, &m->truth, &m->placement, &placed);
+  put(env, &placed);
+}
+
+// The episode's own rules and its first restart (kind NONE: open play).
+static vs_event draw_episode(const vs_episode_def *def, uint64_t seed, vs_referee_def *referee) {
+  vs_rng rng = vs_rng_make(seed, SEED_EPISODE);
+  if (def->still_high_s > 0) referee->still_s = vs_rng_range(&rng, def->still_low_s, def->still_high_s);
+  vs_event start = {.kind = VS_EVENT_KICK_OFF, .team = referee->kick_off};
+  double at = vs_rng_uniform(&rng);
+  vs_team either = vs_rng_below(&rng, VS_TEAMS) ? VS_YELLOW : VS_BLUE;
+  int quadrant = 1 + (int)vs_rng_below(&rng, 4);
+  if (def->either_kicks_off) start.team = referee->kick_off = either;
+  if (at < def->open_play)
+    start.kind = VS_EVENT_NONE;
+  else if (at < def->open_play + def->penalty)
+    start = (vs_event){.kind = VS_EVENT_PENALTY, .team = either};
+  else if (at < def->open_play + def->penalty + def->free_ball)
+    start = (vs_event){.kind = VS_EVENT_FREE_BALL, .quadrant = quadrant};
+  return start;
 }
 
 vs_status vs_env_reset(vs_env *env, uint64_t seed, vs_error *err) {
@@ -117,7 +141,9 @@ vs_status vs_env_reset(vs_env *env, uint64_t seed, vs_error *err) {
   m->seed = seed;
   m->hash = VS_HASH_START;
   m->placement = vs_rng_make(seed, SEED_PLACEMENT);
-  vs_status s = vs_referee_init(&m->referee, &env->def.referee, err);
+  vs_referee_def rules = env->def.referee;
+  vs_event start = draw_episode(&env->def.episode, seed, &rules);
+  vs_status s = vs_referee_init(&m->referee, &rules, err);
   for (int t = 0; t < VS_TEAMS && s == VS_OK; t++)
     s = vs_control_reset(env->control[t], vs_seed_mix(seed, SEED_PLAYER + (uint64_t)t), env->def.shuffle_adversaries,
                          err);
@@ -125,8 +151,13 @@ vs_status vs_env_reset(vs_env *env, uint64_t seed, vs_error *err) {
   vs_sensors_reset(&m->sensors, &env->def.realism, vs_seed_mix(seed, SEED_SENSORS));
   vs_sim_reset(env->sim, &m->sensors.params);
   vs_sim_world(env->sim, &m->truth);
-  vs_event kick_off = {.kind = VS_EVENT_KICK_OFF, .team = m->referee.kick_off};
-  place(env, &kick_off);
+  if (start.kind == VS_EVENT_NONE) {
+    vs_world open;
+    vs_place_open_play(&m->truth, &m->placement, &open);
+    put(env, &open);
+  } else {
+    place(env, &start);
+  }
   m->judged = m->truth;
   measure(env);
   return VS_OK;

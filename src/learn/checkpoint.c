@@ -171,7 +171,7 @@ vs_status vs_train_read_def(const char *path, vs_train_def *out, vs_error *err) 
     snprintf(text, sizeof text, "%.*s", (int)(size < sizeof text ? size : sizeof text - 1), (const char *)data);
     vs_config_key keys[VS_TRAIN_KEYS_MAX];
     *out = vs_train_def_default();
-    snprintf(out->precision, sizeof out->precision, "fp32"); // of runs older than this setting
+    vs_train_def_before(out);
     vs_train_schema(out, keys);
     s = vs_config_parse(used, text, keys, err);
   }

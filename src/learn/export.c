@@ -6,8 +6,8 @@
 #include "vsss/contract.h"
 #include "vsss/learn.h"
 
-vs_status vs_export_actor(const char *path, const vs_net *net, const float *parameters, const char *name,
-                          bool with_spread, const vs_onnx_note *notes, int note_count, vs_error *err) {
+vs_status vs_export_actor(const char *path, const vs_net *net, const float *parameters, const vs_export_def *def,
+                          vs_error *err) {
   const vs_net_shape *s = &net->shape;
   const int last = s->width[s->layers - 1], outputs = vs_net_outputs(net, VS_ACTOR);
   // The head is stored [outputs][width]; the writer wants [width][outputs].
@@ -24,7 +24,7 @@ vs_status vs_export_actor(const char *path, const vs_net *net, const float *para
                                .weight = parameters + net->weight[l][VS_ACTOR],
                                .bias = parameters + net->bias[l]};
   layer[s->layers] = (vs_onnx_layer){last, outputs, outputs, head, parameters + net->head_bias[VS_ACTOR]};
-  const vs_onnx_policy policy = {name, s->layers + 1, layer, with_spread, note_count, notes};
+  const vs_onnx_policy policy = {def->name, s->layers + 1, layer, def->io, def->with_spread, def->notes, def->note};
   vs_status status = vs_onnx_write(path, &policy, err);
   free(head);
   return status;
@@ -42,7 +42,8 @@ vs_status vs_learn_write_untrained(const char *path, uint64_t seed, vs_error *er
   char number[32];
   snprintf(number, sizeof number, "%llu", (unsigned long long)seed);
   const vs_onnx_note notes[] = {{"seed", number}, {"transitions", "0"}, {"command", "make"}};
-  if (s == VS_OK) s = vs_export_actor(path, &net, parameters, "untrained", true, notes, 3, err);
+  const vs_export_def def = {"untrained", {false, 1.0}, true, notes, 3};
+  if (s == VS_OK) s = vs_export_actor(path, &net, parameters, &def, err);
   free(parameters);
   return s;
 }

@@ -1,5 +1,6 @@
 #include "league.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -111,16 +112,21 @@ static void release_unused(vs_league *league) {
 }
 
 // The harder a self is to beat, the more often it is met; none is forgotten.
+static double weight_of(const vs_frozen_self *self) {
+  double losses = 1.0 - self->beaten;
+  return 0.03 + losses * losses;
+}
+
 static int draw_from_pool(const vs_league *league, vs_rng *rng) {
   double total = 0.0;
   for (int i = 0; i < league->selves; i++)
-    if (league->self[i].in_pool) total += 1.1 - league->self[i].beaten;
+    if (league->self[i].in_pool) total += weight_of(&league->self[i]);
   double at = total * vs_rng_uniform(rng);
   int last = -1;
   for (int i = 0; i < league->selves; i++) {
     if (!league->self[i].in_pool) continue;
     last = i;
-    at -= 1.1 - league->self[i].beaten;
+    at -= weight_of(&league->self[i]);
     if (at < 0.0) break;
   }
   return last;
@@ -177,7 +183,7 @@ void vs_league_episode_over(vs_league *league, int index, int goals_for, int goa
   if (slot->self >= 0) {
     vs_frozen_self *self = &league->self[slot->self];
     double result = difference > 0 ? 1.0 : difference < 0 ? 0.0 : 0.5;
-    self->beaten += 0.05 * (result - self->beaten);
+    self->beaten += 0.1 * (result - self->beaten);
     self->users--;
     // An episode that began against a frozen self since replaced says nothing about the present one.
     if (slot->self == league->frozen && vs_league_kind(league, index) == VS_OPPONENT_FROZEN) {
@@ -212,20 +218,41 @@ static vs_status replace_frozen(vs_league *league, const float *actor, vs_error 
   return VS_OK;
 }
 
+// How much older the next older and how much younger the next younger member of the pool are, together: the room that
+// self leaves when it goes. The oldest and the newest leave none.
+static int room_around(const vs_league *league, int self) {
+  int id = league->self[self].id, older = 0, newer = INT_MAX;
+  for (int i = 0; i < league->selves; i++) {
+    int other = league->self[i].id;
+    if (!league->self[i].in_pool || i == self) continue;
+    if (other < id && other > older) older = other;
+    if (other > id && other < newer) newer = other;
+  }
+  return older == 0 || newer == INT_MAX ? INT_MAX : newer - older;
+}
+
 static vs_status extend_pool(vs_league *league, const float *actor, vs_error *err) {
-  int place = add_self(league, actor), members = 0, easiest = -1;
+  int place = add_self(league, actor), members = 0, crowded = -1, least = INT_MAX;
   if (place < 0) return vs_fail(err, VS_FAIL, "out of memory for a frozen opponent");
   league->self[place].in_pool = true;
-  // The pool is full: the self that is beaten most goes (the oldest of equals).
+  // The pool is full: of the two that are nearest in age one goes, so that it goes on to span the whole run, the weak
+  // but different beginnings too. Of equals the oldest.
   for (int i = 0; i < league->selves; i++) {
     if (!league->self[i].in_pool) continue;
     members++;
-    if (i == place) continue;
-    if (easiest < 0 || league->self[i].beaten > league->self[easiest].beaten ||
-        (league->self[i].beaten == league->self[easiest].beaten && league->self[i].id < league->self[easiest].id))
-      easiest = i;
+    int room = i == place ? INT_MAX : room_around(league, i);
+    if (room < least || (room == least && crowded >= 0 && league->self[i].id < league->self[crowded].id)) {
+      crowded = i;
+      least = room;
+    }
   }
-  if (members > league->def.pool_size && easiest >= 0) league->self[easiest].in_pool = false;
+  if (members <= league->def.pool_size) return VS_OK;
+  // A pool of one or two has no middle: its oldest goes.
+  for (int i = 0; crowded < 0 && i < league->selves; i++)
+    if (league->self[i].in_pool && i != place) crowded = i;
+  for (int i = 0; least == INT_MAX && i < league->selves; i++)
+    if (league->self[i].in_pool && i != place && league->self[i].id < league->self[crowded].id) crowded = i;
+  league->self[crowded].in_pool = false;
   release_unused(league);
   return VS_OK;
 }

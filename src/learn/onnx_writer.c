@@ -3,10 +3,11 @@
 #include <stdio.h>
 
 #include "vsss/contract.h"
+#include "vsss/observe.h"
 #include "wire.h"
 
 // Numbers of onnx.proto (ONNX IR version 8, operator set 13: Split without sizes, Softplus, Gemm).
-enum { IR_VERSION = 8, OPSET = 13, TYPE_FLOAT = 1, ATTRIBUTE_INT = 2 };
+enum { IR_VERSION = 8, OPSET = 13, TYPE_FLOAT = 1, TYPE_INT32 = 6, ATTRIBUTE_INT = 2 };
 enum { MODEL_IR = 1, MODEL_PRODUCER = 2, MODEL_GRAPH = 7, MODEL_OPSET = 8, MODEL_META = 14 };
 enum { GRAPH_NODE = 1, GRAPH_NAME = 2, GRAPH_TENSOR = 5, GRAPH_INPUT = 11, GRAPH_OUTPUT = 12 };
 enum { NODE_INPUT = 1, NODE_OUTPUT = 2, NODE_NAME = 3, NODE_OP = 4, NODE_ATTRIBUTE = 5 };
@@ -28,16 +29,30 @@ static void node(vs_bytes *graph, const char *op, const char *const *inputs, con
   vs_wire_message(graph, GRAPH_NODE, &n);
 }
 
-// rows x columns of a float array with `stride` floats from row to row; rows 0: a vector.
-static void tensor(vs_bytes *graph, const char *name, const float *data, int rows, int columns, int stride) {
+// rows x columns of an array of 4-byte numbers with `stride` of them from row to row; rows 0: a vector.
+static void tensor_of(vs_bytes *graph, int type, const char *name, const void *data, int rows, int columns,
+                      int stride) {
   vs_bytes t = {0}, raw = {0};
   if (rows > 0) vs_wire_int(&t, 1, rows);
   vs_wire_int(&t, 1, columns);
-  vs_wire_int(&t, 2, TYPE_FLOAT);
+  vs_wire_int(&t, 2, type);
   vs_wire_text(&t, 8, name);
   for (int r = 0; r < (rows > 0 ? rows : 1); r++)
-    vs_bytes_append(&raw, data + (size_t)r * (size_t)stride, (size_t)columns * sizeof *data);
+    vs_bytes_append(&raw, (const char *)data + (size_t)r * (size_t)stride * sizeof(float),
+                    (size_t)columns * sizeof(float));
   vs_wire_message(&t, 9, &raw);
+  vs_wire_message(graph, GRAPH_TENSOR, &t);
+}
+
+static void tensor(vs_bytes *graph, const char *name, const float *data, int rows, int columns, int stride) {
+  tensor_of(graph, TYPE_FLOAT, name, data, rows, columns, stride);
+}
+
+static void scalar(vs_bytes *graph, const char *name, const float *value) {
+  vs_bytes t = {0};
+  vs_wire_int(&t, 2, TYPE_FLOAT);
+  vs_wire_text(&t, 8, name);
+  vs_wire_bytes(&t, 9, value, sizeof *value);
   vs_wire_message(graph, GRAPH_TENSOR, &t);
 }
 
@@ -56,30 +71,101 @@ static void port(vs_bytes *graph, int field, const char *name, int columns) {
   vs_wire_message(graph, field, &info);
 }
 
-static void layer_nodes(vs_bytes *graph, const vs_onnx_layer *l, int index, bool last) {
+// What vs_symmetry_canonical asks of the newest frame, as five differences that are above 0 where it is so: y < 0, the
+// first ally farther from the ball, adversary 0 farther than 1, 0 than 2, 1 than 2.
+enum { QUESTIONS = 5, ANSWERS = 1 << QUESTIONS };
+
+static void fill_questions(float (*matrix)[QUESTIONS]) {
+  float(*frame)[QUESTIONS] = matrix + VS_OBS_SIZE - VS_OBS_FRAME, (*d)[QUESTIONS] = frame + VS_OBS_ADVERSARIES_DISTANCE;
+  frame[VS_OBS_BALL_XY + 1][0] = -1;
+  frame[VS_OBS_ALLIES_BALL_DISTANCE][1] = d[0][2] = d[0][3] = d[1][4] = 1;
+  frame[VS_OBS_ALLIES_BALL_DISTANCE + 1][1] = d[1][2] = d[2][3] = d[2][4] = -1;
+}
+
+// The version for each set of answers (bit k: question k).
+static int version_of(int answers) {
+  int farther01 = answers >> 2 & 1, farther02 = answers >> 3 & 1, farther12 = answers >> 4 & 1;
+  int first = !farther01 && !farther02 ? 0 : !farther12 ? 1 : 2;
+  int swapped = first == 0 ? farther12 : first == 1 ? farther02 : farther01;
+  return ((answers & 1) * 2 + (answers >> 1 & 1)) * 6 + 2 * first + swapped;
+}
+
+// observation[N][464] -> canonical[N][464] and, of its version, wheel_order[N][4], which undoes a mirror image in the
+// network's outputs.
+static void canonical_nodes(vs_bytes *graph) {
+  static const float zero = 0.0f, bits[QUESTIONS] = {1, 2, 4, 8, 16};
+  static const int32_t order[2][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}};
+  float question[VS_OBS_SIZE][QUESTIONS] = {{0}}, sign[ANSWERS][VS_OBS_SIZE];
+  int32_t index[ANSWERS][VS_OBS_SIZE], wheels[ANSWERS][4];
+  vs_symmetry_table table;
+  vs_symmetry_table_init(&table);
+  fill_questions(question);
+  for (int a = 0; a < ANSWERS; a++) {
+    int version = version_of(a);
+    for (int i = 0; i < VS_OBS_SIZE; i++) {
+      int k = i % VS_OBS_FRAME;
+      index[a][i] = i - k + table.index[version][k];
+      sign[a][i] = table.sign[version][k];
+    }
+    for (int i = 0; i < 4; i++) wheels[a][i] = order[vs_symmetry_mirrored(version)][i];
+  }
+  tensor(graph, "zero", &zero, 0, 1, 1);
+  tensor(graph, "question", &question[0][0], VS_OBS_SIZE, QUESTIONS, QUESTIONS);
+  tensor(graph, "bits", bits, 0, QUESTIONS, QUESTIONS);
+  tensor_of(graph, TYPE_INT32, "indices", index, ANSWERS, VS_OBS_SIZE, VS_OBS_SIZE);
+  tensor(graph, "signs", &sign[0][0], ANSWERS, VS_OBS_SIZE, VS_OBS_SIZE);
+  tensor_of(graph, TYPE_INT32, "wheel_orders", wheels, ANSWERS, 4, 4);
+  node(graph, "MatMul", (const char *[]){"observation", "question", NULL}, (const char *[]){"doubt", NULL}, NULL, 0);
+  node(graph, "Greater", (const char *[]){"doubt", "zero", NULL}, (const char *[]){"truth", NULL}, NULL, 0);
+  node(graph, "Cast", (const char *[]){"truth", NULL}, (const char *[]){"answer", NULL}, "to", TYPE_FLOAT);
+  node(graph, "MatMul", (const char *[]){"answer", "bits", NULL}, (const char *[]){"answers", NULL}, NULL, 0);
+  node(graph, "Cast", (const char *[]){"answers", NULL}, (const char *[]){"version", NULL}, "to", TYPE_INT32);
+  node(graph, "Gather", (const char *[]){"indices", "version", NULL}, (const char *[]){"index", NULL}, "axis", 0);
+  node(graph, "Gather", (const char *[]){"signs", "version", NULL}, (const char *[]){"sign", NULL}, "axis", 0);
+  node(graph, "Gather", (const char *[]){"wheel_orders", "version", NULL}, (const char *[]){"wheel_order", NULL}, "axis",
+       0);
+  node(graph, "GatherElements", (const char *[]){"observation", "index", NULL}, (const char *[]){"moved", NULL}, "axis",
+       1);
+  node(graph, "Mul", (const char *[]){"moved", "sign", NULL}, (const char *[]){"canonical", NULL}, NULL, 0);
+}
+
+static void layer_nodes(vs_bytes *graph, const vs_onnx_layer *l, int index, bool last, const char *input) {
   char in[32], weight[32], bias[32], sum[32], out[32];
   snprintf(in, sizeof in, "hidden%d", index);
   snprintf(weight, sizeof weight, "weight%d", index);
   snprintf(bias, sizeof bias, "bias%d", index);
   snprintf(sum, sizeof sum, "sum%d", index);
   snprintf(out, sizeof out, "hidden%d", index + 1);
-  const char *from = index == 0 ? "observation" : in;
-  node(graph, "Gemm", (const char *[]){from, weight, bias, NULL}, (const char *[]){last ? "raw" : sum, NULL}, NULL, 0);
+  const char *from = index == 0 ? input : in;
+  node(graph, "Gemm", (const char *[]){from, weight, bias, NULL}, (const char *[]){last ? "head" : sum, NULL}, NULL, 0);
   if (!last) node(graph, "Tanh", (const char *[]){sum, NULL}, (const char *[]){out, NULL}, NULL, 0);
   tensor(graph, weight, l->weight, l->in, l->out, l->stride);
   tensor(graph, bias, l->bias, 0, l->out, l->out);
 }
 
-// raw[N][4] -> alpha, beta[N][2] -> action[N][2] = (alpha - beta)/(alpha + beta).
-static void beta_head(vs_bytes *graph) {
+// head[N][4] -> alpha, beta[N][2] -> action[N][2] = gain (alpha - beta)/(alpha + beta), clipped.
+static void beta_head(vs_bytes *graph, const vs_policy_io *io) {
   static const float one = 1.0f;
+  const float gain = (float)io->action_gain;
   tensor(graph, "one", &one, 0, 1, 1);
-  node(graph, "Softplus", (const char *[]){"raw", NULL}, (const char *[]){"positive", NULL}, NULL, 0);
+  if (io->canonical)
+    node(graph, "GatherElements", (const char *[]){"head", "wheel_order", NULL}, (const char *[]){"raw", NULL}, "axis", 1);
+  node(graph, "Softplus", (const char *[]){io->canonical ? "raw" : "head", NULL}, (const char *[]){"positive", NULL}, NULL, 0);
   node(graph, "Add", (const char *[]){"positive", "one", NULL}, (const char *[]){"shape", NULL}, NULL, 0);
   node(graph, "Split", (const char *[]){"shape", NULL}, (const char *[]){"alpha", "beta", NULL}, "axis", 1);
   node(graph, "Sub", (const char *[]){"alpha", "beta", NULL}, (const char *[]){"difference", NULL}, NULL, 0);
   node(graph, "Add", (const char *[]){"alpha", "beta", NULL}, (const char *[]){"total", NULL}, NULL, 0);
-  node(graph, "Div", (const char *[]){"difference", "total", NULL}, (const char *[]){"action", NULL}, NULL, 0);
+  const bool amplified = gain != 1.0f;
+  node(graph, "Div", (const char *[]){"difference", "total", NULL},
+       (const char *[]){amplified ? "mean" : "action", NULL}, NULL, 0);
+  if (!amplified) return;
+  static const float limits[2] = {-1.0f, 1.0f};
+  tensor(graph, "gain", &gain, 0, 1, 1);
+  scalar(graph, "lowest", &limits[0]);
+  scalar(graph, "highest", &limits[1]);
+  node(graph, "Mul", (const char *[]){"mean", "gain", NULL}, (const char *[]){"amplified", NULL}, NULL, 0);
+  node(graph, "Clip", (const char *[]){"amplified", "lowest", "highest", NULL}, (const char *[]){"action", NULL}, NULL,
+       0);
 }
 
 static void note(vs_bytes *model, const char *key, const char *value) {
@@ -95,8 +181,10 @@ vs_status vs_onnx_write(const char *path, const vs_onnx_policy *policy, vs_error
     return vs_fail(err, VS_FAIL, "%s: network is %d -> %d, the contract wants %d -> %d", path, first->in, last->out,
                    VS_OBS_SIZE, 2 * VS_ACTION_SIZE);
   vs_bytes model = {0}, graph = {0}, opset = {0};
-  for (int i = 0; i < policy->layers; i++) layer_nodes(&graph, &policy->layer[i], i, i + 1 == policy->layers);
-  beta_head(&graph);
+  if (policy->io.canonical) canonical_nodes(&graph);
+  const char *input = policy->io.canonical ? "canonical" : "observation";
+  for (int i = 0; i < policy->layers; i++) layer_nodes(&graph, &policy->layer[i], i, i + 1 == policy->layers, input);
+  beta_head(&graph, &policy->io);
   vs_wire_text(&graph, GRAPH_NAME, policy->name);
   port(&graph, GRAPH_INPUT, "observation", VS_OBS_SIZE);
   port(&graph, GRAPH_OUTPUT, "action", VS_ACTION_SIZE);

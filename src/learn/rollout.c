@@ -65,6 +65,7 @@ static bool allocate_batch(vs_rollout *r) {
   r->log_1_u = zeroed(n * A, sizeof(float), &failed);
   r->value = zeroed(n + (size_t)r->rows, sizeof(float), &failed);
   r->end = zeroed(n, 1, &failed);
+  r->mirrored = zeroed((size_t)r->rows, sizeof *r->mirrored, &failed);
   return r->x && !failed;
 }
 
@@ -109,6 +110,7 @@ vs_status vs_rollout_init(vs_rollout *rollout, const vs_rollout_def *def, const 
                           vs_error *err) {
   *rollout =
       (vs_rollout){.def = *def, .net = &learner->net, .blas = &learner->blas, .pool = learner->pool, .league = league};
+  vs_symmetry_table_init(&rollout->symmetry);
   vs_net_shape shape = learner->net.shape;
   shape.critic = false;
   vs_status s = vs_net_init(&rollout->actor, &shape, err);
@@ -154,20 +156,33 @@ void vs_rollout_free(vs_rollout *r) {
                          r->reward,
                          r->cut_value,
                          r->old_value,
-                         r->end};
+                         r->end,
+                         r->mirrored};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
   *r = (vs_rollout){0};
 }
 
-// Draws the action of one row: number `decision` of the row's own stream, whoever computes it. log_p NULL: a frozen
-// self, of which nothing is kept.
-static void sample_row(vs_rollout *r, const float *raw, int row, size_t kept, bool learning) {
+// What the network sees of row `row` of all (observations float[rows][VS_OBS_SIZE]); whether it is a mirror image.
+static bool show(const vs_rollout *r, const float *observations, int row, float *x) {
+  const float *observation = observations + (size_t)row * VS_OBS_SIZE;
+  if (!r->def.io.canonical) {
+    memcpy(x, observation, VS_OBS_SIZE * sizeof *x);
+    return false;
+  }
+  int version = vs_symmetry_canonical(observation);
+  vs_symmetry_apply(&r->symmetry, version, observation, x);
+  return vs_symmetry_mirrored(version);
+}
+
+// Draws the action of one row: number `decision` of the row's own stream, whoever computes it. Of a frozen self
+// (learning false) nothing is kept.
+static void sample_row(vs_rollout *r, const float *raw, int row, bool mirrored, size_t kept, bool learning) {
   vs_rng rng = vs_rng_make(vs_seed_mix(r->def.seed, (uint64_t)r->decision), (uint64_t)row);
   double log_p = 0.0;
   for (int k = 0; k < A; k++) {
     double alpha = 1.0 + vs_softplus(raw[k]), beta = 1.0 + vs_softplus(raw[A + k]);
     double u = vs_beta_sample(alpha, beta, &rng);
-    r->io.action[row * A + k] = (float)(2.0 * u - 1.0);
+    r->io.action[row * A + (mirrored ? 1 - k : k)] = (float)vs_clamp(r->def.io.action_gain * (2.0 * u - 1.0), -1.0, 1.0);
     if (!learning) continue;
     float log_u = (float)log(u), log_1_u = (float)log1p(-u);
     r->log_u[kept * A + (size_t)k] = log_u;
@@ -184,14 +199,17 @@ static void infer_piece(void *context, int piece, int thread) {
   bool learning = job->learning >= 0;
   size_t kept = (size_t)s->t * (size_t)r->rows + (size_t)(learning ? job->learning : 0);
   float *x = learning && s->keep ? r->x + kept * VS_OBS_SIZE : s->gathered + (size_t)thread * CHUNK * VS_OBS_SIZE;
-  for (int i = 0; i < job->count; i++)
-    memcpy(x + (size_t)i * VS_OBS_SIZE, r->io.observation + (size_t)job->row[i] * VS_OBS_SIZE, VS_OBS_SIZE * sizeof *x);
+  bool mirrored[CHUNK];
+  for (int i = 0; i < job->count; i++) {
+    mirrored[i] = show(r, r->io.observation, job->row[i], x + (size_t)i * VS_OBS_SIZE);
+    if (learning && s->keep) r->mirrored[job->learning + i] = mirrored[i];
+  }
   vs_net_work *work = learning ? &s->joint[thread] : &s->actor[thread];
   vs_net_forward(job->net, r->blas, job->parameters, x, job->count, work);
   for (int i = 0; i < job->count; i++) {
     size_t at = kept + (size_t)i;
     if (learning) r->value[at] = (float)(work->value[i] * s->scale->deviation + s->scale->mean);
-    if (s->keep && !r->watch) sample_row(r, work->raw + i * 2 * A, job->row[i], at, learning);
+    if (s->keep && !r->watch) sample_row(r, work->raw + i * 2 * A, job->row[i], mirrored[i], at, learning);
   }
 }
 
@@ -239,7 +257,9 @@ void vs_rollout_act(vs_rollout *rollout, int t, const float *parameters, const v
 // What a state was worth whose episode the clock cut short: rows [at, at + 3) of a match.
 static void value_of_cut(vs_rollout *r, int row, const float *parameters, const vs_value_scale *scale, float *out) {
   vs_net_work *work = &r->scratch->joint[0];
-  vs_net_forward(r->net, r->blas, parameters, r->io.final_observation + (size_t)row * VS_OBS_SIZE, 1, work);
+  float x[VS_OBS_SIZE];
+  show(r, r->io.final_observation, row, x);
+  vs_net_forward(r->net, r->blas, parameters, x, 1, work);
   *out = (float)(work->value[0] * scale->deviation + scale->mean);
 }
 
@@ -265,7 +285,9 @@ static void watch_actions(vs_rollout *r, int t) {
   static const double edge = 0.02;
   for (int i = 0; i < r->rows; i++)
     for (int k = 0; k < A; k++) {
-      double u = vs_clamp(0.5 * (r->io.action[r->row[i] * A + k] + 1.0), edge, 1.0 - edge);
+      const float *action = r->io.action + r->row[i] * A;
+      double u = 0.5 * (action[r->mirrored[i] ? 1 - k : k] / r->def.io.action_gain + 1.0);
+      u = vs_clamp(u, edge, 1.0 - edge);
       size_t at = ((size_t)t * (size_t)r->rows + (size_t)i) * A + (size_t)k;
       r->log_u[at] = (float)log(u);
       r->log_1_u[at] = (float)log1p(-u);

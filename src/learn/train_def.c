@@ -8,28 +8,35 @@
 #include "reward_mix.h"
 #include "train_internal.h"
 #include "vsss/learn.h"
+#include "vsss/referee.h"
 #include "vsss/sim.h"
 
 vs_train_def vs_train_def_default(void) {
   return (vs_train_def){
       .drive = "planar",
+      .realism = "deploy/config/training.ini",
       .placement = "random",
       .episode_s = 40.0,
-      .envs = 96,
+      .still_low_s = 2.0,
+      .still_high_s = 10.0,
+      .start_open = 0.35,
+      .start_penalty = 0.1,
+      .start_free_ball = 0.1,
+      .envs = 128,
       .steps = 32,
       .threads = 2,
       .seed = 1,
       .opponent = "self=0.6,pool=0.4",
       .replace_score = 0.6,
-      .pool_size = 16,
+      .pool_size = 24,
       .pool_every = 20,
-      .reward = "dense",
-      // Three tenths of the dense reward stay: against goals alone a policy of 25 M transitions lost half its score
-      // against INF and EMC in the next 13 M.
-      .reward_end = "goals,progress=0.44,approach=0.09,own_distance=0.03,distance=0.015,offence=0.015,defence=0.015",
-      .anneal_from_m = 8.0,
-      .anneal_to_m = 24.0,
-      .gamma = 0.98,
+      .reward = "dense,still=0.03",
+      // What stays to the end rewards the ball's way and a live ball, the team's nearest robot and good places; no longer
+      // each robot's own distance, which makes all three swarm round the ball.
+      .reward_end = "goals,progress=0.44,distance=0.03,offence=0.02,defence=0.02,still=0.03",
+      .anneal_from_m = 4.0,
+      .anneal_to_m = 14.0,
+      .gamma = 0.985,
       .lambda = 0.95,
       .clip = 0.2,
       .entropy = 0.003,
@@ -42,6 +49,8 @@ vs_train_def vs_train_def_default(void) {
       .epochs = 3,
       .minibatch = 1024,
       .pieces = 4,
+      .canonical = true,
+      .action_gain = 1.4,
       .hidden = "256,256",
       .first_shape = 4.0,
       .learner = "own",
@@ -50,12 +59,27 @@ vs_train_def vs_train_def_default(void) {
   };
 }
 
+// Every episode a kick-off by the rules' own clock; the network sees and drives as the contract says.
+static void without_levers(vs_train_def *def) {
+  def->realism[0] = '\0';
+  def->still_low_s = def->still_high_s = VS_STILL_S;
+  def->start_open = def->start_penalty = def->start_free_ball = 0.0;
+  def->canonical = false;
+  def->action_gain = 1.0;
+}
+
+void vs_train_def_before(vs_train_def *def) {
+  snprintf(def->precision, sizeof def->precision, "fp32");
+  without_levers(def);
+}
+
 // Paper, Table 2 and section VII; what the paper leaves open is marked + or * in the design notes (paper.md): Adam's
 // epsilon, value clipping, gradient norm, entropy and value weights, minibatches, layer sizes.
 static vs_train_def paper(void) {
   vs_train_def def = vs_train_def_default();
   def.envs = 200;
   def.steps = 214;
+  without_levers(&def);
   snprintf(def.opponent, sizeof def.opponent, "frozen");
   def.replace_score = 0.6;
   def.window_of_zeros = true;
@@ -98,6 +122,11 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       TEXT(realism, "INI file of sensors and dynamics, drawn anew each episode"),
       TEXT(placement, "restarts: random (legal poses) or paper"),
       REAL(episode_s, 1, 600, "an episode ends here, or at the first goal"),
+      REAL(still_low_s, 0.5, 60, "free ball after so many seconds of a still ball, drawn for each episode"),
+      REAL(still_high_s, 0.5, 60, "... up to"),
+      REAL(start_open, 0, 1, "share of episodes that begin in open play, ball rolling"),
+      REAL(start_penalty, 0, 1, "... with a penalty"),
+      REAL(start_free_ball, 0, 1, "... with a free ball; the rest with a kick-off"),
       WHOLE(envs, 1, 4096, "matches side by side"),
       WHOLE(steps, 1, 4096, "decisions of each match per update"),
       WHOLE(threads, 1, 256, "threads"),
@@ -125,6 +154,8 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       WHOLE(epochs, 1, 100, "passes over a batch"),
       WHOLE(minibatch, 16, 10000000, "rows of one gradient"),
       WHOLE(pieces, 1, 64, "parts a minibatch is computed in (results depend on it, not on threads)"),
+      SWITCH(canonical, "networks see the canonical one of an observation's mirror images and numberings"),
+      REAL(action_gain, 1, 4, "the policy's output times this, clipped, is the wheel command"),
       TEXT(hidden, "layer sizes of both networks"),
       REAL(first_shape, 1.01, 100, "alpha = beta of the untrained policy"),
       TEXT(learner, "own (kernels over BLAS) or torch"),
@@ -218,6 +249,12 @@ vs_status vs_train_def_check(const vs_train_def *def, vs_error *err) {
   if (s != VS_OK) return s;
   if (precision == VS_PRECISION_BF16 && !strcmp(def->learner, "torch"))
     return vs_fail(err, VS_USAGE, "precision = bf16: is for learner = own; torch computes in fp32");
+  if (def->still_high_s < def->still_low_s)
+    return vs_fail(err, VS_USAGE, "still_high_s = %g: must not be below still_low_s = %g", def->still_high_s,
+                   def->still_low_s);
+  if (def->start_open + def->start_penalty + def->start_free_ball > 1.0 + 1e-9)
+    return vs_fail(err, VS_USAGE, "start_open + start_penalty + start_free_ball = %g: at most 1",
+                   def->start_open + def->start_penalty + def->start_free_ball);
   if (def->anneal_to_m < def->anneal_from_m)
     return vs_fail(err, VS_USAGE, "anneal_to_m = %g: must not be below anneal_from_m = %g", def->anneal_to_m,
                    def->anneal_from_m);

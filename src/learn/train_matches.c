@@ -1,6 +1,10 @@
 #include "train_matches.h"
 
+#include <limits.h>
 #include <stdlib.h>
+#include <unistd.h>
+
+#include "vsss/paths.h"
 
 typedef struct sim_matches {
   vs_model *model;
@@ -24,6 +28,14 @@ static void free_matches(void *self) {
   free(m);
 }
 
+// A path as it stands, or from where vsss is installed (the default recipe's).
+static vs_status load_realism(const char *path, vs_realism *out, vs_error *err) {
+  char found[PATH_MAX];
+  bool here = access(path, R_OK) == 0;
+  if (!here && vs_path_find(path, found, sizeof found, NULL) == VS_OK) path = found;
+  return vs_realism_load(path, out, err);
+}
+
 static vs_status open_vecenv(sim_matches *m, const vs_train_def *def, int rank, vs_error *err) {
   vs_drive drive;
   vs_status s = vs_drive_parse(def->drive, &drive, err);
@@ -38,8 +50,14 @@ static vs_status open_vecenv(sim_matches *m, const vs_train_def *def, int rank, 
   vec.env.referee = vs_referee_def_training();
   vec.env.referee.duration_s = def->episode_s;
   vec.env.shuffle_adversaries = true;
+  vec.env.episode = (vs_episode_def){.open_play = def->start_open,
+                                     .penalty = def->start_penalty,
+                                     .free_ball = def->start_free_ball,
+                                     .still_low_s = def->still_low_s,
+                                     .still_high_s = def->still_high_s,
+                                     .either_kicks_off = true};
   s = vs_placement_parse(def->placement, &vec.env.referee.placement, err);
-  if (s == VS_OK && def->realism[0]) s = vs_realism_load(def->realism, &vec.env.realism, err);
+  if (s == VS_OK && def->realism[0]) s = load_realism(def->realism, &vec.env.realism, err);
   return s == VS_OK ? vs_vecenv_new(&vec, &m->vec, err) : s;
 }
 

@@ -26,6 +26,7 @@ static const vs_train_column columns[] = {
     TERM("progress", VS_REWARD_PROGRESS),
     TERM("approach", VS_REWARD_APPROACH),
     TERM("own_distance", VS_REWARD_OWN_DISTANCE),
+    TERM("still", VS_REWARD_STILL),
     COLUMN(entropy, "ppo"),
     COLUMN(kl, "ppo"),
     COLUMN(clip_fraction, "ppo"),

@@ -7,7 +7,7 @@
 
 // The restarts as the pieces see them.
 typedef struct restart {
-  vs_event_kind kind; // KICK_OFF, PENALTY, FREE_BALL or GOAL_KICK
+  vs_event_kind kind; // KICK_OFF, PENALTY, FREE_BALL or GOAL_KICK; NONE: open play
   vs_team kicker;
   double ball_x_m, ball_y_m;
 } restart;
@@ -88,6 +88,7 @@ static bool rules_allow(const restart *r, int t, double x_m, double y_m) {
   double x_side = r->ball_x_m > 0 ? 1 : -1, y_side = r->ball_y_m > 0 ? 1 : -1;
   double area_x_m = -(VS_FIELD_HALF_LENGTH_M - VS_AREA_DEPTH_M);
   switch (r->kind) {
+  case VS_EVENT_NONE: return true;
   case VS_EVENT_PENALTY: // behind the half line, as seen from the ball
     return x_m <= -ROBOT_CLEAR_M;
   case VS_EVENT_FREE_BALL: // out of the ball's quadrant
@@ -153,6 +154,52 @@ static void random_poses(const restart *r, vs_rng *rng, vs_pose pose[VS_TEAMS][V
       placed[n++] = p;
     }
   }
+}
+
+// In the corner of positive x and y: along the end wall beside the goal, along the side wall, or in the corner itself.
+static void draw_at_wall(vs_rng *rng, double *x_m, double *y_m) {
+  const double at_end_m = VS_FIELD_HALF_LENGTH_M - VS_BALL_RADIUS_M, at_side_m = VS_FIELD_HALF_WIDTH_M - VS_BALL_RADIUS_M;
+  const double corner_m = VS_CORNER_M + VS_BALL_RADIUS_M; // clear of the triangle
+  switch (vs_rng_below(rng, 3)) {
+  case 0:
+    *x_m = at_end_m;
+    *y_m = vs_rng_range(rng, VS_AREA_HALF_WIDTH_M, VS_FIELD_HALF_WIDTH_M - corner_m);
+    break;
+  case 1:
+    *x_m = vs_rng_range(rng, 0, VS_FIELD_HALF_LENGTH_M - corner_m);
+    *y_m = at_side_m;
+    break;
+  default: // at the middle of the triangle's side
+    *x_m = VS_FIELD_HALF_LENGTH_M - VS_CORNER_M / 2 - VS_BALL_RADIUS_M / ROOT_2;
+    *y_m = VS_FIELD_HALF_WIDTH_M - VS_CORNER_M / 2 - VS_BALL_RADIUS_M / ROOT_2;
+  }
+}
+
+static vs_ball draw_ball(vs_rng *rng) {
+  vs_ball ball = {.z_m = VS_BALL_RADIUS_M, .valid = true};
+  if (vs_rng_below(rng, 3) == 0) {
+    draw_at_wall(rng, &ball.x_m, &ball.y_m);
+    if (vs_rng_below(rng, 2)) ball.x_m = -ball.x_m;
+    if (vs_rng_below(rng, 2)) ball.y_m = -ball.y_m;
+    return ball;
+  }
+  const double end_m = VS_FIELD_HALF_LENGTH_M - VS_AREA_DEPTH_M, side_m = VS_FIELD_HALF_WIDTH_M - 2 * VS_BALL_RADIUS_M;
+  double speed_mps = vs_rng_range(rng, 0, VS_OPEN_PLAY_MPS), to = vs_rng_range(rng, -VS_PI, VS_PI);
+  ball.x_m = vs_rng_range(rng, -end_m, end_m);
+  ball.y_m = vs_rng_range(rng, -side_m, side_m);
+  ball.vx_mps = speed_mps * cos(to);
+  ball.vy_mps = speed_mps * sin(to);
+  return ball;
+}
+
+void vs_place_open_play(const vs_world *before, vs_rng *rng, vs_world *out) {
+  *out = *before;
+  out->ball = draw_ball(rng);
+  const restart r = {.kind = VS_EVENT_NONE, .ball_x_m = out->ball.x_m, .ball_y_m = out->ball.y_m};
+  vs_pose pose[VS_TEAMS][VS_TEAM_SIZE];
+  random_poses(&r, rng, pose);
+  for (int t = 0; t < VS_TEAMS; t++)
+    for (int i = 0; i < VS_TEAM_SIZE; i++) out->robot[t][i] = (vs_robot){.pose = pose[t][i], .valid = true};
 }
 
 void vs_place(vs_placement_mode mode, const vs_event *event, const vs_world *before, vs_rng *rng, vs_world *out) {

@@ -12,7 +12,8 @@ vs_referee_def vs_referee_def_default(vs_rules rules) {
                         .duration_s = 120,
                         .goal_difference_stop = 10,
                         .halves = 1,
-                        .kick_off = VS_BLUE};
+                        .kick_off = VS_BLUE,
+                        .still_s = VS_STILL_S};
   if (rules == VS_RULES_LEAGUE) {
     def.duration_s = 600;
     def.halves = 2;
@@ -33,6 +34,7 @@ static vs_status check_def(const vs_referee_def *def, vs_error *err) {
     return vs_fail(err, VS_USAGE, "duration %g s: a match lasts 1 to 7200 s", def->duration_s);
   if (def->goal_difference_stop < 0)
     return vs_fail(err, VS_USAGE, "goal difference %d: 0 (never ends the match) or more", def->goal_difference_stop);
+  if (!(def->still_s > 0)) return vs_fail(err, VS_USAGE, "a still ball for %g s: more than 0", def->still_s);
   if (def->halves != 1 && def->halves != 2) return vs_fail(err, VS_USAGE, "%d halves: 1 or 2", def->halves);
   return VS_OK;
 }

@@ -30,7 +30,7 @@ static bool two_defenders(const vs_referee *r, const vs_facts *f, vs_event *even
 }
 
 static bool ball_still(const vs_referee *r, const vs_facts *f, vs_event *event) {
-  if (!vs_reached(r->still_s, VS_STILL_S, f->dt_s)) return false;
+  if (!vs_reached(r->still_s, r->def.still_s, f->dt_s)) return false;
   event->kind = VS_EVENT_FREE_BALL;
   event->quadrant = f->quadrant;
   return true;

@@ -18,7 +18,7 @@ vs_reward_weights vs_reward_paper(void) {
 
 const char *vs_reward_name(vs_reward_term term) {
   static const char *const names[VS_REWARD_TERMS] = {"speed", "distance", "offence",  "defence",     "goal",
-                                                     "foul",  "progress", "approach", "own_distance"};
+                                                     "foul",  "progress", "approach", "own_distance", "still"};
   return (unsigned)term < VS_REWARD_TERMS ? names[term] : "unknown";
 }
 
@@ -48,7 +48,7 @@ static double step_term(double way_m) { return vs_clamp(way_m / VS_REWARD_STEP_M
 static void dense_terms(const vs_world *previous, const vs_world *view, double terms[VS_TEAM_SIZE][VS_REWARD_TERMS]) {
   point ball = ball_of(view);
   double gain_m = distance_m(ball_of(previous), their_goal) - distance_m(ball, their_goal);
-  double nearest_m = 1.0;
+  double nearest_m = 1.0, still = distance_m(ball_of(previous), ball) < VS_REWARD_STILL_M ? -1.0 : 0.0;
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     point robot = robot_of(view, i);
     double before_m = distance_m(robot_of(previous, i), ball_of(previous)), now_m = distance_m(robot, ball);
@@ -56,7 +56,8 @@ static void dense_terms(const vs_world *previous, const vs_world *view, double t
     terms[i][VS_REWARD_SPEED] = step_term(gain_m - VS_REWARD_OFFSET_M);
     terms[i][VS_REWARD_OFFENCE] = position_term(robot, ball, their_goal);
     terms[i][VS_REWARD_DEFENCE] = position_term(ball, robot, own_goal);
-    terms[i][VS_REWARD_PROGRESS] = step_term(gain_m);
+    terms[i][VS_REWARD_PROGRESS] = gain_m / VS_REWARD_STEP_M;
+    terms[i][VS_REWARD_STILL] = still;
     terms[i][VS_REWARD_APPROACH] = step_term(before_m - now_m);
     terms[i][VS_REWARD_OWN_DISTANCE] = -fmin(1.0, now_m);
   }

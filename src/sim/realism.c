@@ -57,12 +57,15 @@ vs_realism vs_realism_default(void) {
 vs_status vs_realism_load(const char *path, vs_realism *out, vs_error *err) {
   vs_realism realism = vs_realism_default();
   char names[2 * ROWS][48];
-  vs_config_key schema[2 * ROWS + 2] = {{.name = "noise", .type = VS_CONFIG_BOOL, .target = &realism.noise}};
+  enum { FIRST = 2 };
+  vs_config_key schema[2 * ROWS + FIRST + 1] = {
+      {.name = "noise", .type = VS_CONFIG_BOOL, .target = &realism.noise},
+      {.name = "ideal_share", .type = VS_CONFIG_REAL, .target = &realism.ideal_share, .min = 0, .max = 1}};
   for (size_t i = 0; i < 2 * ROWS; i++) {
     const row *from = &rows[i / 2];
     vs_range *range = range_of(&realism, i / 2);
     snprintf(names[i], sizeof names[i], "%s.%s", from->name, i % 2 ? "high" : "low");
-    schema[i + 1] = (vs_config_key){.name = names[i],
+    schema[i + FIRST] = (vs_config_key){.name = names[i],
                                     .type = VS_CONFIG_REAL,
                                     .target = i % 2 ? &range->high : &range->low,
                                     .min = from->min,

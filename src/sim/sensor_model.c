@@ -13,6 +13,11 @@
 static double draw(vs_rng *rng, vs_range range) { return vs_rng_range(rng, range.low, range.high); }
 
 void vs_sensors_reset(vs_sensors *sensors, const vs_realism *realism, uint64_t seed) {
+  const vs_realism ideal = vs_realism_default();
+  if (realism->ideal_share > 0) {
+    vs_rng rng = vs_rng_make(seed, 3);
+    if (vs_rng_uniform(&rng) < realism->ideal_share) realism = &ideal;
+  }
   memset(sensors, 0, sizeof *sensors);
   sensors->rng = vs_rng_make(seed, 0);
   sensors->params = vs_realism_draw(realism, seed);

@@ -110,6 +110,13 @@ void vs_sim_place(vs_sim *sim, const vs_world *world) {
   const double planar[6] = {world->ball.x_m, world->ball.y_m, 1, 0, 0, 0};
   if (sim->model->drive == VS_DRIVE_CONTACT) memcpy(ball, contact, sizeof contact);
   if (sim->model->drive == VS_DRIVE_PLANAR) memcpy(ball, planar, sizeof planar);
+  // It rolls without slipping: its spin about the floor's axes goes with its way.
+  double *speed = sim->data->qvel + sim->model->ball_qvel;
+  double *spin = speed + (sim->model->drive == VS_DRIVE_CONTACT ? 3 : 2);
+  speed[0] = world->ball.vx_mps;
+  speed[1] = world->ball.vy_mps;
+  spin[0] = -world->ball.vy_mps / VS_BALL_RADIUS_M;
+  spin[1] = world->ball.vx_mps / VS_BALL_RADIUS_M;
 }
 
 static vs_status check_warnings(const vs_sim *sim, vs_error *err) {

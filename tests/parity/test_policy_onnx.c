@@ -51,7 +51,7 @@ static char file[128];
 
 static void write_model(const vs_net *net, const float *parameters) {
   const vs_onnx_note note = {"seed", "7"};
-  assert_ok(vs_export_actor(file, net, parameters, "test", false, &note, 1, err));
+  assert_ok(vs_export_actor(file, net, parameters, &(vs_export_def){"test", io, false, &note, 1}, err));
 }
 
 static vs_status open_file(vs_player **player, vs_error *err) {
@@ -175,7 +175,7 @@ static void a_network_of_other_sizes_is_not_written(void **state) {
   assert_ok(vs_net_init(&net, &shape, err));
   float *parameters = calloc(net.size, sizeof *parameters);
   vs_error err = {0};
-  assert_int_equal(vs_export_actor(file, &net, parameters, "test", false, NULL, 0, &err), VS_FAIL);
+  assert_int_equal(vs_export_actor(file, &net, parameters, &(vs_export_def){"test", {false, 1.0}, false, NULL, 0}, &err), VS_FAIL);
   assert_non_null(strstr(err.text, "463 -> 4"));
   free(parameters);
 }
