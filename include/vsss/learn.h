@@ -23,7 +23,7 @@ typedef struct vs_train_def {
   double episode_s;
   double still_low_s, still_high_s;                  // how long the ball may lie still, drawn for each episode
   double start_open, start_penalty, start_free_ball; // shares of episodes that begin so; the rest kick off
-  int envs, steps; // matches side by side; decisions of each per update
+  int envs, steps;                                   // matches side by side; decisions of each per update
   int threads;
   int seed;
   // Opponents (src/learn/league.h).

@@ -122,8 +122,8 @@ static void canonical_nodes(vs_bytes *graph) {
   node(graph, "Cast", (const char *[]){"answers", NULL}, (const char *[]){"version", NULL}, "to", TYPE_INT32);
   node(graph, "Gather", (const char *[]){"indices", "version", NULL}, (const char *[]){"index", NULL}, "axis", 0);
   node(graph, "Gather", (const char *[]){"signs", "version", NULL}, (const char *[]){"sign", NULL}, "axis", 0);
-  node(graph, "Gather", (const char *[]){"wheel_orders", "version", NULL}, (const char *[]){"wheel_order", NULL}, "axis",
-       0);
+  node(graph, "Gather", (const char *[]){"wheel_orders", "version", NULL}, (const char *[]){"wheel_order", NULL},
+       "axis", 0);
   node(graph, "GatherElements", (const char *[]){"observation", "index", NULL}, (const char *[]){"moved", NULL}, "axis",
        1);
   node(graph, "Mul", (const char *[]){"moved", "sign", NULL}, (const char *[]){"canonical", NULL}, NULL, 0);
@@ -149,8 +149,10 @@ static void beta_head(vs_bytes *graph, const vs_policy_io *io) {
   const float gain = (float)io->action_gain;
   tensor(graph, "one", &one, 0, 1, 1);
   if (io->canonical)
-    node(graph, "GatherElements", (const char *[]){"head", "wheel_order", NULL}, (const char *[]){"raw", NULL}, "axis", 1);
-  node(graph, "Softplus", (const char *[]){io->canonical ? "raw" : "head", NULL}, (const char *[]){"positive", NULL}, NULL, 0);
+    node(graph, "GatherElements", (const char *[]){"head", "wheel_order", NULL}, (const char *[]){"raw", NULL}, "axis",
+         1);
+  node(graph, "Softplus", (const char *[]){io->canonical ? "raw" : "head", NULL}, (const char *[]){"positive", NULL},
+       NULL, 0);
   node(graph, "Add", (const char *[]){"positive", "one", NULL}, (const char *[]){"shape", NULL}, NULL, 0);
   node(graph, "Split", (const char *[]){"shape", NULL}, (const char *[]){"alpha", "beta", NULL}, "axis", 1);
   node(graph, "Sub", (const char *[]){"alpha", "beta", NULL}, (const char *[]){"difference", NULL}, NULL, 0);

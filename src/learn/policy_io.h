@@ -5,8 +5,9 @@
 #include <stdbool.h>
 
 typedef struct vs_policy_io {
-  bool canonical;     // the network sees the canonical one of the symmetric versions (vsss/observe.h)
-  double action_gain; // action = action_gain (2 u - 1), clipped to [-1, 1]: above 1 full speed is no edge of the density
+  bool canonical; // the network sees the canonical one of the symmetric versions (vsss/observe.h)
+  double
+      action_gain; // action = action_gain (2 u - 1), clipped to [-1, 1]: above 1 full speed is no edge of the density
 } vs_policy_io;
 
 #endif

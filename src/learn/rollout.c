@@ -182,7 +182,8 @@ static void sample_row(vs_rollout *r, const float *raw, int row, bool mirrored, 
   for (int k = 0; k < A; k++) {
     double alpha = 1.0 + vs_softplus(raw[k]), beta = 1.0 + vs_softplus(raw[A + k]);
     double u = vs_beta_sample(alpha, beta, &rng);
-    r->io.action[row * A + (mirrored ? 1 - k : k)] = (float)vs_clamp(r->def.io.action_gain * (2.0 * u - 1.0), -1.0, 1.0);
+    r->io.action[row * A + (mirrored ? 1 - k : k)] =
+        (float)vs_clamp(r->def.io.action_gain * (2.0 * u - 1.0), -1.0, 1.0);
     if (!learning) continue;
     float log_u = (float)log(u), log_1_u = (float)log1p(-u);
     r->log_u[kept * A + (size_t)k] = log_u;

@@ -52,13 +52,13 @@ typedef struct vs_rollout {
   bool watch;           // imitation: scripts play, this policy only values what they see
   vs_vecenv_buffers io; // [rows of all matches], owned
   vs_symmetry_table symmetry;
-  int rows;             // that learn
-  int *row;             // [rows]: their rows in io
-  long long decision;   // steps since the start of the run: numbers the random draws
+  int rows;           // that learn
+  int *row;           // [rows]: their rows in io
+  long long decision; // steps since the start of the run: numbers the random draws
   // Step-major, [steps][rows], as the network sees and draws them (policy_io.h); value [steps + 1][rows] in reward units.
   float *x, *log_u, *log_1_u, *log_p, *advantage, *target, *value, *reward, *cut_value, *old_value;
   uint8_t *end;
-  bool *mirrored; // [rows]: the network saw this step's observation as its mirror image
+  bool *mirrored;         // [rows]: the network saw this step's observation as its mirror image
   vs_rollout_stats stats; // of the present batch
   struct vs_rollout_scratch *scratch;
 } vs_rollout;

@@ -158,7 +158,8 @@ static void random_poses(const restart *r, vs_rng *rng, vs_pose pose[VS_TEAMS][V
 
 // In the corner of positive x and y: along the end wall beside the goal, along the side wall, or in the corner itself.
 static void draw_at_wall(vs_rng *rng, double *x_m, double *y_m) {
-  const double at_end_m = VS_FIELD_HALF_LENGTH_M - VS_BALL_RADIUS_M, at_side_m = VS_FIELD_HALF_WIDTH_M - VS_BALL_RADIUS_M;
+  const double at_end_m = VS_FIELD_HALF_LENGTH_M - VS_BALL_RADIUS_M,
+               at_side_m = VS_FIELD_HALF_WIDTH_M - VS_BALL_RADIUS_M;
   const double corner_m = VS_CORNER_M + VS_BALL_RADIUS_M; // clear of the triangle
   switch (vs_rng_below(rng, 3)) {
   case 0:

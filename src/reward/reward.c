@@ -17,7 +17,7 @@ vs_reward_weights vs_reward_paper(void) {
 }
 
 const char *vs_reward_name(vs_reward_term term) {
-  static const char *const names[VS_REWARD_TERMS] = {"speed", "distance", "offence",  "defence",     "goal",
+  static const char *const names[VS_REWARD_TERMS] = {"speed", "distance", "offence",  "defence",      "goal",
                                                      "foul",  "progress", "approach", "own_distance", "still"};
   return (unsigned)term < VS_REWARD_TERMS ? names[term] : "unknown";
 }

@@ -66,11 +66,11 @@ vs_status vs_realism_load(const char *path, vs_realism *out, vs_error *err) {
     vs_range *range = range_of(&realism, i / 2);
     snprintf(names[i], sizeof names[i], "%s.%s", from->name, i % 2 ? "high" : "low");
     schema[i + FIRST] = (vs_config_key){.name = names[i],
-                                    .type = VS_CONFIG_REAL,
-                                    .target = i % 2 ? &range->high : &range->low,
-                                    .min = from->min,
-                                    .max = from->max,
-                                    .help = from->help};
+                                        .type = VS_CONFIG_REAL,
+                                        .target = i % 2 ? &range->high : &range->low,
+                                        .min = from->min,
+                                        .max = from->max,
+                                        .help = from->help};
   }
   vs_status status = vs_config_load(path, schema, err);
   if (status != VS_OK) return status;

@@ -1,4 +1,5 @@
 // src/env/env.c
+#include <math.h>
 #include <mujoco/mujoco.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -299,6 +300,67 @@ static void failures_name_seed_time_and_team(void **state) {
   assert_int_equal(vs_env_new(&def, &env, &err), VS_USAGE);
 }
 
+// 4,000 training episodes: shares of the starts within 3 deviations (open play 0.35: 1,400 +- 91, penalties and free
+// balls 0.1: 400 +- 57, the rest kick-offs), either team as often, and the still ball's clock over its whole range.
+static void training_episodes_begin_as_their_shares_say(void **state) {
+  (void)state;
+  enum { EPISODES = 4000 };
+  vs_env_def def = vs_env_def_default(model);
+  def.referee = vs_referee_def_training();
+  def.episode = (vs_episode_def){.open_play = 0.35,
+                                 .penalty = 0.1,
+                                 .free_ball = 0.1,
+                                 .still_low_s = 2,
+                                 .still_high_s = 10,
+                                 .either_kicks_off = true};
+  vs_env *env = NULL;
+  assert_ok(vs_env_new(&def, &env, err));
+  int open = 0, penalty[VS_TEAMS] = {0}, free_ball = 0, kick_off = 0, rolling = 0;
+  for (int i = 0; i < EPISODES; i++) {
+    vs_world w;
+    assert_ok(vs_env_reset(env, (uint64_t)i, err));
+    vs_env_truth(env, &w);
+    double x_m = w.ball.x_m, y_m = w.ball.y_m;
+    if (w.ball.vx_mps != 0) rolling++;
+    if (x_m == 0 && y_m == 0)
+      kick_off++;
+    else if (fabs(x_m) == 0.375 && y_m == 0)
+      penalty[x_m < 0]++;
+    else if (fabs(x_m) == 0.375 && fabs(y_m) == 0.4)
+      free_ball++;
+    else
+      open++;
+  }
+  assert_in_range(open, 1400 - 91, 1400 + 91);
+  assert_in_range(penalty[0] + penalty[1], 400 - 57, 400 + 57);
+  assert_in_range(penalty[0], 150, 250);
+  assert_in_range(free_ball, 400 - 57, 400 + 57);
+  assert_int_equal(open + penalty[0] + penalty[1] + free_ball + kick_off, EPISODES);
+  assert_in_range(rolling, open * 6 / 10, open * 7 / 10 + 40); // a third lies at a wall
+  vs_env_free(env);
+}
+
+// The ball of a kick-off that nobody touches: free balls after the drawn time, between its limits, never the same.
+static void the_still_balls_clock_is_drawn_for_each_episode(void **state) {
+  (void)state;
+  vs_env_def def = vs_env_def_default(model);
+  def.player[VS_BLUE] = def.player[VS_YELLOW] = "zero:";
+  def.episode = (vs_episode_def){.still_low_s = 2, .still_high_s = 4};
+  vs_env *env = NULL;
+  assert_ok(vs_env_new(&def, &env, err));
+  double least_s = 10, most_s = 0;
+  for (int i = 0; i < 40; i++) {
+    vs_event event = {0};
+    assert_ok(vs_env_reset(env, (uint64_t)i, err));
+    while (event.kind != VS_EVENT_FREE_BALL) assert_ok(vs_env_frame(env, &event, err));
+    least_s = fmin(least_s, event.time_s);
+    most_s = fmax(most_s, event.time_s);
+  }
+  assert_true(least_s >= 1.96 && least_s < 2.5);
+  assert_true(most_s > 3.5 && most_s <= 4.04);
+  vs_env_free(env);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(same_seed_gives_the_same_match_and_another_seed_another),
@@ -310,6 +372,8 @@ int main(void) {
       cmocka_unit_test(a_snapshot_continues_bit_identically_here_and_elsewhere),
       cmocka_unit_test(a_player_is_exchanged_at_the_next_reset),
       cmocka_unit_test(failures_name_seed_time_and_team),
+      cmocka_unit_test(training_episodes_begin_as_their_shares_say),
+      cmocka_unit_test(the_still_balls_clock_is_drawn_for_each_episode),
   };
   return cmocka_run_group_tests_name("env/env", tests, load_model, free_model);
 }

@@ -22,6 +22,7 @@ static vs_train *open_tiny(void) {
 }
 
 // Mean action of the policy where the sign shown is s.
+// The wheel command: the mean of the distribution times the gain.
 static void mean_action(vs_train *train, float s, double action[2]) {
   float x[VS_OBS_SIZE] = {s, 1.0f};
   vs_net_work work;
@@ -29,7 +30,7 @@ static void mean_action(vs_train *train, float s, double action[2]) {
   vs_net_forward(&train->learner.net, &train->learner.blas, train->learner.parameters, x, 1, &work);
   for (int k = 0; k < 2; k++) {
     double alpha = 1.0 + vs_softplus(work.raw[k]), beta = 1.0 + vs_softplus(work.raw[2 + k]);
-    action[k] = 2.0 * alpha / (alpha + beta) - 1.0;
+    action[k] = train->def.action_gain * (2.0 * alpha / (alpha + beta) - 1.0);
   }
   vs_net_work_free(&work);
 }

@@ -112,26 +112,76 @@ static void a_window_that_is_not_full_replaces_nobody(void **state) {
   vs_league_free(&league);
 }
 
-// pool_size 3, one addition an update: never more than three members, and the self that is always beaten goes first.
-static void the_pool_keeps_those_that_are_hard_to_beat(void **state) {
+static int ids_of_pool(const vs_league *league, int *id) {
+  int members = 0;
+  for (int i = 0; i < league->selves; i++) {
+    if (!league->self[i].in_pool) continue;
+    int at = members++;
+    for (; at > 0 && id[at - 1] > league->self[i].id; at--) id[at] = id[at - 1];
+    id[at] = league->self[i].id;
+  }
+  return members;
+}
+
+// pool_size 8, one addition an update, 100 of them: the first and the newest are there, and the six between them span
+// the run, no gap above twice the 100/7 of an even spread.
+static void the_pool_spans_the_whole_run(void **state) {
+  (void)state;
+  vs_league_def def = paper_rule();
+  def.pool_size = 8;
+  assert_ok(vs_league_parse("pool", &def, err));
+  vs_league league;
+  assert_ok(vs_league_init(&league, &def, 4, SIZE, first, 1, err));
+  for (long long update = 1; update <= 100; update++) {
+    assert_ok(after_update(&league, update, NULL, err));
+    for (int slot = 0; slot < 4; slot++) vs_league_episode_over(&league, slot, 0, 0);
+  }
+  int id[101], members = ids_of_pool(&league, id);
+  assert_int_equal(members, 8);
+  assert_int_equal(id[0], 1);
+  assert_int_equal(id[7], 101);
+  for (int k = 1; k < 8; k++) assert_in_range(id[k] - id[k - 1], 1, 28);
+  assert_true(league.selves <= 8 + 4 + 1); // places are used again
+  vs_league_free(&league);
+}
+
+// One that is always beaten weighs 0.03, one that wins half of the time 0.03 + 0.25: it is met 9 times as often, here
+// at least 5 times.
+static void those_that_are_hard_to_beat_are_met_more_often(void **state) {
   (void)state;
   vs_league_def def = paper_rule();
   assert_ok(vs_league_parse("pool", &def, err));
   vs_league league;
-  assert_ok(vs_league_init(&league, &def, 4, SIZE, first, 1, err));
-  int easy = league.self[league.slot[0].self].id;
-  for (int i = 0; i < 50; i++) vs_league_episode_over(&league, 0, 1, 0); // the only member is beaten
-  for (long long update = 1; update <= 3; update++) assert_ok(after_update(&league, update, NULL, err));
-  int members = 0;
-  for (int i = 0; i < league.selves; i++) {
-    members += league.self[i].in_pool;
-    assert_false(league.self[i].in_pool && league.self[i].id == easy);
+  assert_ok(vs_league_init(&league, &def, 1, SIZE, first, 1, err));
+  for (int i = 0; i < 100; i++) vs_league_episode_over(&league, 0, 1, 0); // the only member is beaten
+  assert_ok(after_update(&league, 1, NULL, err));
+  int met[2] = {0}, easy = league.slot[0].self;
+  for (int i = 0; i < 2000; i++) {
+    bool is_easy = league.slot[0].self == easy;
+    met[is_easy]++;
+    vs_league_episode_over(&league, 0, is_easy || i % 2, !is_easy && i % 2 == 0);
   }
-  assert_int_equal(members, 3);
-  // It still stands where episodes against it are under way, and is given up after the last of them.
-  assert_true(league.slot[3].self >= 0 && league.self[league.slot[3].self].id == easy);
-  for (int slot = 0; slot < 4; slot++) vs_league_episode_over(&league, slot, 0, 0);
-  for (int i = 0; i < league.selves; i++) assert_int_not_equal(league.self[i].id, easy);
+  assert_true(met[1] > 20);
+  assert_true(met[0] > 5 * met[1]);
+  vs_league_free(&league);
+}
+
+// A pool of one: the newest takes the place, and the one before goes when its last episode is over.
+static void a_self_leaves_after_its_last_episode(void **state) {
+  (void)state;
+  vs_league_def def = paper_rule();
+  def.pool_size = 1;
+  assert_ok(vs_league_parse("pool", &def, err));
+  vs_league league;
+  assert_ok(vs_league_init(&league, &def, 2, SIZE, first, 1, err));
+  int old = league.self[league.slot[0].self].id;
+  assert_ok(after_update(&league, 1, NULL, err));
+  int id[2];
+  assert_int_equal(ids_of_pool(&league, id), 1);
+  assert_int_not_equal(id[0], old);
+  assert_int_equal(league.self[league.slot[1].self].id, old);
+  for (int slot = 0; slot < 2; slot++) vs_league_episode_over(&league, slot, 0, 0);
+  for (int i = 0; i < league.selves; i++) assert_int_not_equal(league.self[i].id, old);
   vs_league_free(&league);
 }
 
@@ -154,7 +204,9 @@ int main(void) {
       cmocka_unit_test(the_opponent_stays_the_same_for_a_whole_episode),
       cmocka_unit_test(no_result_is_credited_across_a_swap),
       cmocka_unit_test(a_window_that_is_not_full_replaces_nobody),
-      cmocka_unit_test(the_pool_keeps_those_that_are_hard_to_beat),
+      cmocka_unit_test(the_pool_spans_the_whole_run),
+      cmocka_unit_test(those_that_are_hard_to_beat_are_met_more_often),
+      cmocka_unit_test(a_self_leaves_after_its_last_episode),
       cmocka_unit_test(wrong_mixes_are_refused_with_the_word),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

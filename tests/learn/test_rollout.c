@@ -57,6 +57,11 @@ static void the_critic_says_the_same_after_a_change_of_scale(void **state) {
 
 // Episodes of 7 steps; every third ends by a goal, the others by the clock: of 20 steps, steps 6 (goal) and 13 (clock)
 // end one. Rows of the learning side only, three a match.
+// gain (2u - 1), clipped to [-1, 1].
+static double command(const vs_train *t, double log_u) {
+  return fmin(fmax(t->def.action_gain * (2.0 * exp(log_u) - 1.0), -1.0), 1.0);
+}
+
 static void ends_are_goals_or_cuts_and_rewards_are_the_weighted_terms(void **state) {
   (void)state;
   vs_train *t = open_tiny("frozen", 7);
@@ -69,11 +74,36 @@ static void ends_are_goals_or_cuts_and_rewards_are_the_weighted_terms(void **sta
     for (int i = 0; i < r->rows; i++) {
       int at = step * r->rows + i;
       assert_int_equal(r->end[at], step == 6 ? VS_ENDED : step == 13 ? VS_CUT : VS_GOES_ON);
-      // progress = s left - right^2 of the action taken, which is 2u - 1.
-      double left = 2.0 * exp(r->log_u[2 * at]) - 1.0, right = 2.0 * exp(r->log_u[2 * at + 1]) - 1.0;
+      // progress = s left - right^2 of the action taken.
+      double left = command(t, r->log_u[2 * at]), right = command(t, r->log_u[2 * at + 1]);
       assert_near(r->reward[at], r->x[(size_t)at * VS_OBS_SIZE] * left - right * right, 1e-5);
     }
   assert_near(r->stats.episodes, 2.0 * 4, 0.0);
+  vs_train_free(t);
+}
+
+// With the ball on the right (y < 0) the network sees the mirror image, and what it draws for the left wheel drives the
+// right one; on the left it is as it is.
+static void a_mirrored_observation_drives_mirrored_wheels(void **state) {
+  (void)state;
+  vs_train *t = open_tiny("self", 7);
+  vs_rollout *r = &t->rollout;
+  assert_ok(t->matches.reset(t->matches.self, &r->io, err));
+  for (int row = 0; row < r->rows; row++) {
+    float *newest = r->io.observation + (row + 1) * VS_OBS_SIZE - VS_OBS_FRAME;
+    newest[VS_OBS_BALL_XY + 1] = row % 2 ? -0.5f : 0.5f;
+    newest[VS_OBS_OWN_ACTION] = 0.25f;
+  }
+  vs_rollout_begin(r);
+  vs_rollout_act(r, 0, t->learner.parameters, &t->scale);
+  for (int row = 0; row < r->rows; row++) {
+    const float *newest = r->x + (row + 1) * VS_OBS_SIZE - VS_OBS_FRAME, *action = r->io.action + 2 * row;
+    int mirrored = row % 2;
+    assert_near(newest[VS_OBS_BALL_XY + 1], 0.5, 0);
+    assert_near(newest[VS_OBS_OWN_ACTION + mirrored], 0.25, 0);
+    assert_near(action[mirrored], command(t, r->log_u[2 * row]), 1e-6);
+    assert_near(action[!mirrored], command(t, r->log_u[2 * row + 1]), 1e-6);
+  }
   vs_train_free(t);
 }
 
@@ -97,6 +127,7 @@ int main(void) {
       cmocka_unit_test(the_scale_follows_the_returns),
       cmocka_unit_test(the_critic_says_the_same_after_a_change_of_scale),
       cmocka_unit_test(ends_are_goals_or_cuts_and_rewards_are_the_weighted_terms),
+      cmocka_unit_test(a_mirrored_observation_drives_mirrored_wheels),
       cmocka_unit_test(the_present_policy_plays_the_same_whatever_the_opponents),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

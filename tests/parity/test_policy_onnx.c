@@ -8,6 +8,7 @@
 #include "assert_near.h"
 #include "learn/export.h"
 #include "vsss/learn.h"
+#include "vsss/observe.h"
 #include "vsss/policy.h"
 #include "vsss/rng.h"
 #include "vsss/world.h"
@@ -49,9 +50,14 @@ static void plain_forward(const vs_net *net, const float *p, const float *x, dou
 static char folder[] = "build/onnx_test_XXXXXX";
 static char file[128];
 
-static void write_model(const vs_net *net, const float *parameters) {
+static void write_model_with(const vs_net *net, const float *parameters, vs_policy_io io) {
   const vs_onnx_note note = {"seed", "7"};
-  assert_ok(vs_export_actor(file, net, parameters, &(vs_export_def){"test", io, false, &note, 1}, err));
+  const vs_export_def def = {"test", io, true, &note, 1};
+  assert_ok(vs_export_actor(file, net, parameters, &def, err));
+}
+
+static void write_model(const vs_net *net, const float *parameters) {
+  write_model_with(net, parameters, (vs_policy_io){false, 1.0});
 }
 
 static vs_status open_file(vs_player **player, vs_error *err) {
@@ -89,6 +95,48 @@ static void onnx_runtime_agrees_with_plain_c_on_1000_observations(void **state) 
   }
   vs_player_close(player);
   free(action);
+  free(obs);
+  free(parameters);
+}
+
+// A file whose network sees canonical observations and whose output is amplified, against the same in plain C. Every
+// tenth observation is of a tie: adversaries and allies at equal distances.
+static void a_canonical_amplified_policy_agrees_with_plain_c(void **state) {
+  (void)state;
+  enum { N = 400 };
+  vs_net net;
+  float *parameters, *obs = malloc(N * VS_OBS_SIZE * sizeof *obs), action[N * 2];
+  vs_symmetry_table table;
+  vs_player *player = NULL;
+  vs_rng rng = vs_rng_make(9, 0);
+  make_net(&net, &parameters);
+  write_model_with(&net, parameters, (vs_policy_io){true, 1.4});
+  assert_ok(open_file(&player, err));
+  for (int i = 0; i < N * VS_OBS_SIZE; i++) obs[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
+  for (int i = 0; i < N; i += 10) {
+    float *newest = obs + (i + 1) * VS_OBS_SIZE - VS_OBS_FRAME;
+    newest[VS_OBS_ALLIES_BALL_DISTANCE] = newest[VS_OBS_ALLIES_BALL_DISTANCE + 1];
+    newest[VS_OBS_ADVERSARIES_DISTANCE + i / 10 % 3] = newest[VS_OBS_ADVERSARIES_DISTANCE + (i / 10 + 1) % 3];
+  }
+  assert_ok(vs_player_act(player, obs, N, action, err));
+  vs_symmetry_table_init(&table);
+  int mirrored = 0, clipped = 0;
+  for (int i = 0; i < N; i++) {
+    float shown[VS_OBS_SIZE];
+    double mean[2];
+    int version = vs_symmetry_canonical(obs + i * VS_OBS_SIZE), swap = vs_symmetry_mirrored(version);
+    vs_symmetry_apply(&table, version, obs + i * VS_OBS_SIZE, shown);
+    plain_forward(&net, parameters, shown, mean);
+    for (int k = 0; k < 2; k++) {
+      double expected = fmin(fmax(1.4 * mean[k ^ swap], -1.0), 1.0);
+      assert_near(action[2 * i + k], expected, 2e-5);
+      clipped += fabs(expected) == 1.0;
+    }
+    mirrored += swap;
+  }
+  assert_true(mirrored > N / 4 && mirrored < 3 * N / 4);
+  assert_true(clipped < N);
+  vs_player_close(player);
   free(obs);
   free(parameters);
 }
@@ -175,7 +223,8 @@ static void a_network_of_other_sizes_is_not_written(void **state) {
   assert_ok(vs_net_init(&net, &shape, err));
   float *parameters = calloc(net.size, sizeof *parameters);
   vs_error err = {0};
-  assert_int_equal(vs_export_actor(file, &net, parameters, &(vs_export_def){"test", {false, 1.0}, false, NULL, 0}, &err), VS_FAIL);
+  const vs_export_def def = {"test", {false, 1.0}, false, NULL, 0};
+  assert_int_equal(vs_export_actor(file, &net, parameters, &def, &err), VS_FAIL);
   assert_non_null(strstr(err.text, "463 -> 4"));
   free(parameters);
 }
@@ -236,6 +285,7 @@ int main(void) {
   }
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(onnx_runtime_agrees_with_plain_c_on_1000_observations),
+      cmocka_unit_test(a_canonical_amplified_policy_agrees_with_plain_c),
       cmocka_unit_test(a_truncated_file_is_refused_at_every_length),
       cmocka_unit_test(a_model_of_another_contract_is_refused),
       cmocka_unit_test(a_network_of_other_sizes_is_not_written),

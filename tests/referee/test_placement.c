@@ -310,6 +310,32 @@ static void random_roles_and_headings_are_all_drawn_and_depend_on_the_seed_alone
   for (int k = 0; k < 8; k++) assert_in_range(eighth[k], 370, 530);            // 450 expected
 }
 
+// Open play: everything on the field and apart, no penalty at once, a third of the balls at a wall and at rest, the
+// others rolling no faster than they should.
+static void open_play_is_legal_and_a_third_of_it_at_the_walls(void **state) {
+  (void)state;
+  enum { N = 6000 };
+  int at_wall = 0, in_corner = 0;
+  double fastest_mps = 0;
+  for (int n = 0; n < N; n++) {
+    vs_rng rng = vs_rng_make(5, (uint64_t)n);
+    vs_world w;
+    vs_place_open_play(&nothing_before, &rng, &w);
+    assert_apart_and_on_the_field(&w);
+    double x_m = fabs(w.ball.x_m), y_m = fabs(w.ball.y_m), mps = hypot(w.ball.vx_mps, w.ball.vy_mps);
+    bool corner = x_m + y_m > 1.25, wall = corner || x_m > 0.7 || y_m > 0.62;
+    assert_false(x_m > 0.6 && y_m < 0.35); // in an area
+    if (wall) assert_near(mps, 0, 0);
+    at_wall += wall;
+    in_corner += corner;
+    fastest_mps = fmax(fastest_mps, mps);
+    assert_int_equal(w.seq, nothing_before.seq);
+  }
+  assert_in_range(at_wall, N / 3 - 120, N / 3 + 120); // 3 deviations: 110
+  assert_true(in_corner > N / 12);
+  assert_true(fastest_mps > 0.95 && fastest_mps <= VS_OPEN_PLAY_MPS);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(kick_off_stands_on_the_middle_line_of_the_field),
@@ -321,6 +347,7 @@ int main(void) {
       cmocka_unit_test(everything_is_placed_at_rest_and_the_clock_goes_on),
       cmocka_unit_test(every_fixed_placement_is_legal),
       cmocka_unit_test(ten_thousand_random_placements_are_legal),
+      cmocka_unit_test(open_play_is_legal_and_a_third_of_it_at_the_walls),
       cmocka_unit_test(no_random_placement_is_at_once_whistled_again),
       cmocka_unit_test(random_roles_and_headings_are_all_drawn_and_depend_on_the_seed_alone),
   };

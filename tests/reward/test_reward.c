@@ -49,7 +49,20 @@ static void speed_counts_the_way_towards_the_goal_centre(void **state) {
   before.ball.x_m = -0.25;
   before.ball.y_m = 0; // gain 0.6 m
   assert_near(term(&before, &now, 1, VS_REWARD_SPEED), 1, 0);
-  assert_near(term(&before, &now, 1, VS_REWARD_PROGRESS), 1, 0);
+  // A hard shot counts whole, so that there and back is nothing.
+  assert_near(term(&before, &now, 1, VS_REWARD_PROGRESS), 0.6 / 0.14, 1e-12);
+  assert_near(term(&now, &before, 1, VS_REWARD_PROGRESS), -0.6 / 0.14, 1e-12);
+}
+
+static void a_ball_that_moves_less_than_a_centimetre_is_still(void **state) {
+  (void)state;
+  vs_world before = scene(), now = scene();
+  for (int i = 0; i < VS_TEAM_SIZE; i++) assert_near(term(&before, &now, i, VS_REWARD_STILL), -1, 0);
+  now.ball.x_m = before.ball.x_m + 0.006;
+  now.ball.y_m = before.ball.y_m - 0.0079; // 0.0099 m
+  assert_near(term(&before, &now, 0, VS_REWARD_STILL), -1, 0);
+  now.ball.y_m = before.ball.y_m - 0.0081; // 0.0101 m
+  assert_near(term(&before, &now, 0, VS_REWARD_STILL), 0, 0);
 }
 
 static void distance_is_the_nearest_team_mates_for_all(void **state) {
@@ -197,6 +210,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(speed_of_a_still_ball_is_minus_five_fourteenths),
       cmocka_unit_test(speed_counts_the_way_towards_the_goal_centre),
+      cmocka_unit_test(a_ball_that_moves_less_than_a_centimetre_is_still),
       cmocka_unit_test(distance_is_the_nearest_team_mates_for_all),
       cmocka_unit_test(offence_is_each_robots_own_angle_at_the_ball),
       cmocka_unit_test(defence_is_the_angle_at_the_robot_between_ball_and_own_goal),
