@@ -47,7 +47,7 @@ static bool allocate_io(vs_rollout *r) {
   r->io.observation = zeroed(rows * VS_OBS_SIZE, sizeof(float), &failed);
   r->io.final_observation = zeroed(rows * VS_OBS_SIZE, sizeof(float), &failed);
   r->io.action = zeroed(rows * A, sizeof(float), &failed);
-  r->io.reward_terms = zeroed(rows * VS_REWARD_TERMS, sizeof(float), &failed);
+  r->io.reward_terms = zeroed(rows * VS_REWARD_TERMS, sizeof(double), &failed);
   r->io.done = zeroed(envs, 1, &failed);
   r->io.time_limit = zeroed(envs, 1, &failed);
   r->io.score = zeroed(envs * VS_TEAMS, sizeof(int32_t), &failed);
@@ -268,7 +268,7 @@ static void record_row(vs_rollout *r, int t, int i, const float *parameters, con
                        const vs_reward_weights *weights) {
   int row = r->row[i], env = row / (VS_TEAMS * VS_TEAM_SIZE);
   size_t at = (size_t)t * (size_t)r->rows + (size_t)i;
-  const float *terms = r->io.reward_terms + (size_t)row * VS_REWARD_TERMS;
+  const double *terms = r->io.reward_terms + (size_t)row * VS_REWARD_TERMS;
   double reward = 0.0;
   for (int k = 0; k < VS_REWARD_TERMS; k++) {
     reward += weights->weight[k] * terms[k];

@@ -53,7 +53,7 @@ static void open_arena(arena *a, const vs_model *model, int threads) {
   size_t rows = VS_VECENV_ROWS(ENVS);
   a->buffers = (vs_vecenv_buffers){.observation = calloc(rows * VS_OBS_SIZE, sizeof(float)),
                                    .action = calloc(rows * VS_ACTION_SIZE, sizeof(float)),
-                                   .reward_terms = calloc(rows * VS_REWARD_TERMS, sizeof(float)),
+                                   .reward_terms = calloc(rows * VS_REWARD_TERMS, sizeof(double)),
                                    .done = calloc(ENVS, 1),
                                    .time_limit = calloc(ENVS, 1),
                                    .score = calloc((size_t)ENVS * VS_TEAMS, sizeof(int32_t)),

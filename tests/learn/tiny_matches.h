@@ -49,7 +49,7 @@ static vs_status tiny_step(void *self, const vs_vecenv_buffers *b, vs_error *err
     b->action[2 * row] = 0.5f * b->observation[(size_t)row * VS_OBS_SIZE];
     b->action[2 * row + 1] = -0.5f;
   }
-  memset(b->reward_terms, 0, (size_t)VS_VECENV_ROWS(t->envs) * VS_REWARD_TERMS * sizeof(float));
+  memset(b->reward_terms, 0, (size_t)VS_VECENV_ROWS(t->envs) * VS_REWARD_TERMS * sizeof *b->reward_terms);
   for (int row = 0; row < VS_VECENV_ROWS(t->envs); row++) {
     float left = b->action[2 * row], right = b->action[2 * row + 1];
     b->reward_terms[row * VS_REWARD_TERMS + VS_REWARD_PROGRESS] =
