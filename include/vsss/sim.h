@@ -21,7 +21,8 @@ typedef struct vs_model vs_model; // constant after loading, shared by threads
 typedef struct vs_model_def {
   vs_drive drive;
   const char *path;       // MJCF; NULL: models/vsss_<drive>.xml found by vs_path_find
-  int substeps_per_frame; // physics steps per 1/30 s camera frame; 0: the drive's default
+  int substeps_per_frame; // physics steps per frame; 0: the drive's default
+  int frame_hz;           // 0: VS_CAMERA_HZ, as everything above the simulator expects; others for bare simulations
 } vs_model_def;
 
 vs_model_def vs_model_def_default(vs_drive drive);
@@ -29,6 +30,7 @@ vs_model_def vs_model_def_default(vs_drive drive);
 vs_status vs_model_load(const vs_model_def *def, vs_model **out, vs_error *err);
 void vs_model_free(vs_model *model);
 double vs_model_step_s(const vs_model *model);
+int vs_model_frame_hz(const vs_model *model);
 int vs_model_substeps(const vs_model *model);
 vs_drive vs_model_drive(const vs_model *model);
 const void *vs_model_mjmodel(const vs_model *model); // const mjModel *, for the renderer and the benchmarks
@@ -59,7 +61,7 @@ void vs_sim_reset(vs_sim *sim,
                   const vs_sim_params *params /* NULL: default */); // time 0, everything at rest, kick-off line
 // Puts robots and ball where world says, robots at rest, wheels stopped, the ball rolling as fast as world says. Time goes on. No allocation, under 50 us.
 void vs_sim_place(vs_sim *sim, const vs_world *world);
-// One camera frame (1/30 s) with the commands held. VS_FAIL: MuJoCo reported a warning (NaN, too many contacts), by name.
+// One frame (1/30 s, or the model's) with the commands held. VS_FAIL: MuJoCo reported a warning (NaN, too many contacts), by name.
 vs_status vs_sim_frame(vs_sim *sim, const vs_wheels command[VS_TEAMS][VS_TEAM_SIZE], vs_error *err);
 void vs_sim_world(const vs_sim *sim, vs_world *out); // the truth
 void *vs_sim_mjdata(vs_sim *sim);                    // mjData *, for the renderer

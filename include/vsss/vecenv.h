@@ -34,15 +34,15 @@ typedef struct vs_vecenv_def {
 // env * 3 + robot.
 #define VS_VECENV_ROWS(envs) ((envs)*VS_TEAMS * VS_TEAM_SIZE)
 typedef struct vs_vecenv_buffers {
-  float *observation;   // [rows][VS_OBS_SIZE]; after a step: of the new episode where one ended
-  float *action;        // [rows][2]: read for external teams, written for others (vs_env_mean_action)
-  double *reward_terms; // [rows][VS_REWARD_TERMS], as vs_reward_sum takes them
-  uint8_t *done;        // [envs]: an episode ended in this step
-  uint8_t *time_limit;  // [envs]: ... by its clock
+  float *observation;       // [rows][VS_OBS_SIZE]; after a step: of the new episode where one ended
+  float *action;            // [rows][2]: read for external teams, written for others (vs_env_mean_action)
+  double *reward_terms;     // [rows][VS_REWARD_TERMS], as vs_reward_sum takes them
+  uint8_t *done;            // [envs]: an episode ended in this step
+  uint8_t *time_limit;      // [envs]: ... by its clock
   float *final_observation; // [rows][VS_OBS_SIZE]: of the ended episode's last frame, only where done (may be NULL)
   int32_t *score;           // [envs][2]: of the ended episode, only where done
   float *episode_s;         // [envs]: length of the ended episode, only where done
-  int32_t *event;           // [envs][2]: kind and team of the step's event (vs_event), team -1 without one (may be NULL)
+  int32_t *event; // [envs][2]: kind and team of the step's event (vs_event), team -1 without one (may be NULL)
 } vs_vecenv_buffers;
 
 vs_status vs_vecenv_new(const vs_vecenv_def *def, vs_vecenv **out, vs_error *err);

@@ -70,7 +70,8 @@ static bool first_row(const vs_vecenv *vec, int index, int team, size_t *row) {
 static void write_observation(const vs_vecenv *vec, int index, float *observation) {
   size_t row;
   for (int t = 0; t < VS_TEAMS; t++)
-    if (first_row(vec, index, t, &row)) vs_env_observation(vec->env[index], (vs_team)t, observation + row * VS_OBS_SIZE);
+    if (first_row(vec, index, t, &row))
+      vs_env_observation(vec->env[index], (vs_team)t, observation + row * VS_OBS_SIZE);
 }
 
 static vs_status begin(vs_vecenv *vec, int index, uint64_t seed, vs_error *err) {

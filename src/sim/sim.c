@@ -123,7 +123,7 @@ static vs_status check_warnings(const vs_sim *sim, vs_error *err) {
   for (int i = 0; i < mjNWARNING; i++) {
     const mjWarningStat *warning = &sim->data->warning[i];
     if (!warning->number) continue;
-    return vs_fail(err, VS_FAIL, "the simulator broke down at %.2f s: %s", sim->frame / 30.0,
+    return vs_fail(err, VS_FAIL, "the simulator broke down at %.2f s: %s", sim->frame / (double)sim->model->frame_hz,
                    mju_warningText(i, warning->lastinfo));
   }
   return VS_OK;
@@ -147,7 +147,7 @@ static void step_frame(void *context) {
 static void shove(vs_sim *sim) {
   if (sim->params.push_per_s <= 0) return;
   for (int i = 0; i < ROBOTS; i++) {
-    if (vs_rng_uniform(&sim->push_rng) >= sim->params.push_per_s / 30) continue;
+    if (vs_rng_uniform(&sim->push_rng) >= sim->params.push_per_s / sim->model->frame_hz) continue;
     double *v = sim->data->qvel + sim->model->robot[i].qvel;
     v[0] += vs_rng_range(&sim->push_rng, -sim->params.push_mps, sim->params.push_mps);
     v[1] += vs_rng_range(&sim->push_rng, -sim->params.push_mps, sim->params.push_mps);
@@ -197,7 +197,7 @@ static void read_planar_robot(const vs_sim *sim, const robot_address *address, c
 }
 
 void vs_sim_world(const vs_sim *sim, vs_world *out) {
-  out->time_us = (int64_t)sim->frame * 1000000 / 30;
+  out->time_us = (int64_t)sim->frame * 1000000 / sim->model->frame_hz;
   out->seq = sim->frame;
   for (int i = 0; i < ROBOTS; i++) {
     vs_robot *robot = &out->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];

@@ -22,7 +22,7 @@ typedef struct robot_address {
 struct vs_model {
   mjModel *mj;
   vs_drive drive;
-  int substeps;
+  int substeps, frame_hz;
   robot_address robot[ROBOTS];
   int ball_body, ball_qpos, ball_qvel;
   uint32_t pair_bits[PAIRS_MOST]; // nearby.c: what must be near for a contact pair to be worth a test

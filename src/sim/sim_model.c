@@ -14,6 +14,7 @@
 // Chosen by the agreement table of bench_sim: see tests/bench/bench_sim.c.
 #define CONTACT_SUBSTEPS 5
 #define PLANAR_SUBSTEPS  5
+#define FRAME_HZ         30 // VS_CAMERA_HZ, which belongs to the contract
 
 const char *vs_drive_name(vs_drive drive) { return drive == VS_DRIVE_PLANAR ? "planar" : "contact"; }
 
@@ -232,10 +233,13 @@ vs_status vs_model_load(const vs_model_def *def, vs_model **out, vs_error *err) 
     return vs_fail(err, VS_USAGE, "%d physics steps per frame: use 1 to 1000, or 0 for the default",
                    def->substeps_per_frame);
   }
+  if (def->frame_hz < 0 || def->frame_hz > 1000)
+    return vs_fail(err, VS_USAGE, "%d frames per second: use 1 to 1000, or 0 for the camera's", def->frame_hz);
   vs_outline_install();
   vs_model *model = calloc(1, sizeof *model);
   if (!model) return vs_fail(err, VS_FAIL, "out of memory");
   model->drive = def->drive;
+  model->frame_hz = def->frame_hz ? def->frame_hz : FRAME_HZ;
   model->substeps = def->substeps_per_frame;
   if (!model->substeps) model->substeps = def->drive == VS_DRIVE_PLANAR ? PLANAR_SUBSTEPS : CONTACT_SUBSTEPS;
   vs_status status = load_file(path, &model->mj, err);
@@ -244,7 +248,7 @@ vs_status vs_model_load(const vs_model_def *def, vs_model **out, vs_error *err) 
     vs_model_free(model);
     return status;
   }
-  model->mj->opt.timestep = 1.0 / 30.0 / model->substeps;
+  model->mj->opt.timestep = 1.0 / model->frame_hz / model->substeps;
   vs_nearby_bind(model);
   *out = model;
   return VS_OK;
@@ -257,6 +261,7 @@ void vs_model_free(vs_model *model) {
 }
 
 double vs_model_step_s(const vs_model *model) { return model->mj->opt.timestep; }
+int vs_model_frame_hz(const vs_model *model) { return model->frame_hz; }
 int vs_model_substeps(const vs_model *model) { return model->substeps; }
 vs_drive vs_model_drive(const vs_model *model) { return model->drive; }
 const void *vs_model_mjmodel(const vs_model *model) { return model->mj; }

@@ -155,12 +155,47 @@ static void a_ball_is_placed_rolling(void **state) {
   }
 }
 
+// A second is a second at any frame rate: 40 frames of 25 ms go as far as 30 of 1/30 s.
+static void frames_may_have_another_length(void **state) {
+  (void)state;
+  vs_model_def def = vs_model_def_default(VS_DRIVE_CONTACT);
+  def.frame_hz = 40;
+  def.substeps_per_frame = 4;
+  vs_model *quick_model = NULL;
+  vs_sim *quick = NULL;
+  assert_ok(vs_model_load(&def, &quick_model, err));
+  assert_ok(vs_sim_new(quick_model, &quick, err));
+  assert_near(vs_model_step_s(quick_model), 0.00625, 1e-12);
+  assert_int_equal(vs_model_frame_hz(quick_model), 40);
+  vs_world before, after;
+  vs_sim_reset(sim, NULL);
+  place_alone();
+  vs_sim_world(sim, &before);
+  frames(30, 20, 20);
+  vs_sim_world(sim, &after);
+  double gone_m = after.robot[VS_BLUE][1].pose.x_m - before.robot[VS_BLUE][1].pose.x_m;
+  vs_sim_place(quick, &before);
+  vs_wheels command[VS_TEAMS][VS_TEAM_SIZE] = {{{0}}};
+  command[VS_BLUE][1] = (vs_wheels){20, 20};
+  for (int i = 0; i < 40; i++) assert_ok(vs_sim_frame(quick, (const vs_wheels(*)[VS_TEAM_SIZE])command, err));
+  vs_sim_world(quick, &after);
+  assert_int_equal(after.time_us, 1000000);
+  assert_true(gone_m > 0.5);
+  assert_near(after.robot[VS_BLUE][1].pose.x_m - before.robot[VS_BLUE][1].pose.x_m, gone_m, 2e-3);
+  vs_sim_free(quick);
+  vs_model_free(quick_model);
+  vs_error err = {0};
+  def.frame_hz = 2000;
+  assert_int_equal(vs_model_load(&def, &quick_model, &err), VS_USAGE);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(placed_world_reads_back_as_placed),
       cmocka_unit_test(a_ball_is_placed_rolling),
       cmocka_unit_test(full_command_drives_1_4_mps_straight),
       cmocka_unit_test(time_counts_frames_and_placing_keeps_it),
+      cmocka_unit_test(frames_may_have_another_length),
       cmocka_unit_test(robots_at_rest_stay_where_they_are),
       cmocka_unit_test(command_that_is_not_a_number_is_refused_by_name),
       cmocka_unit_test(broken_state_is_reported_not_reset_silently),
