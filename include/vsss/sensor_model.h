@@ -3,6 +3,7 @@
 #ifndef VSSS_SENSOR_MODEL_H
 #define VSSS_SENSOR_MODEL_H
 
+#include "vsss/kalman.h"
 #include "vsss/rng.h"
 #include "vsss/sim.h"
 #include "vsss/world.h"
@@ -45,6 +46,10 @@ vs_sim_params vs_realism_draw(const vs_realism *realism, uint64_t seed);
 
 #define VS_SENSOR_DELAY_FRAMES 8
 #define VS_SENSOR_OBJECTS      (VS_TEAMS * VS_TEAM_SIZE + 1) // the ball is last
+// How fast robots and ball may change their velocity: the deviations of the filter that estimates it, as in track.h.
+#define VS_SENSOR_ROBOT_ACCELERATION_MPS2  6.0
+#define VS_SENSOR_BALL_ACCELERATION_MPS2   20.0
+#define VS_SENSOR_TURN_ACCELERATION_RADPS2 200.0
 // A detection lost for longer is no longer valid (its last place is still told), as the field's tracker does.
 #define VS_SENSOR_HOLD_FRAMES 5
 
@@ -60,7 +65,9 @@ typedef struct vs_sensors {
   int lost_frames[VS_SENSOR_OBJECTS]; // left in this burst
   int held_frames[VS_SENSOR_OBJECTS]; // since the last detection
   int radio_lost_frames[VS_TEAMS];
-  vs_world last; // last measurement: held where a detection is lost
+  vs_kalman filter[VS_SENSOR_OBJECTS][3]; // x, y, heading of what was measured: whence the velocities
+  bool filtering[VS_SENSOR_OBJECTS];      // ... since the last restart
+  vs_world last;                          // last measurement: held where a detection is lost
   bool have_last;
   vs_wheels queue[VS_SENSOR_DELAY_FRAMES][VS_TEAMS][VS_TEAM_SIZE]; // newest first
   vs_wheels applied[VS_TEAMS][VS_TEAM_SIZE];
@@ -68,8 +75,11 @@ typedef struct vs_sensors {
 
 // A new episode from this seed; give params to vs_sim_reset.
 void vs_sensors_reset(vs_sensors *sensors, const vs_realism *realism, uint64_t seed);
-// Velocities are passed on as a good tracker would estimate them; wheel speeds are not seen by a camera and become 0.
+// Velocities are those that a Kalman filter of the measured poses estimates, as on the field; wheel speeds are not seen
+// by a camera and become 0.
 void vs_sensors_measure(vs_sensors *sensors, const vs_world *truth, vs_world *measured);
+// After a placement: what is seen next says nothing about how fast anything moved.
+void vs_sensors_restart(vs_sensors *sensors);
 // Commands as decided in this frame -> commands at the robots, the mean over this frame. A delay of 1.8 frames mixes
 // the commands of one and two frames ago, 0.2 to 0.8. A team whose radio frame is lost keeps its last command.
 void vs_sensors_command(vs_sensors *sensors, const vs_wheels in[VS_TEAMS][VS_TEAM_SIZE],

@@ -8,6 +8,7 @@
 #include "vsss/config.h"
 #include "vsss/detect.h"
 #include "vsss/field.h"
+#include "vsss/kalman.h"
 #include "vsss/world.h"
 
 #ifdef __cplusplus
@@ -29,12 +30,6 @@ typedef struct vs_track_def {
   double position_noise_m, ball_noise_m, patch_noise_m, heading_noise_rad;          // deviations of a measurement
 } vs_track_def;
 vs_track_def vs_track_def_default(void); // blue, attacks +x, tags 0 1 2
-
-// A filter of one coordinate. Variances: [0] value, [1] covariance, [2] rate.
-typedef struct vs_kalman {
-  double value, rate;
-  double p[3];
-} vs_kalman;
 
 typedef struct vs_object {
   bool seen;       // ever, since the start

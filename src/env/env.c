@@ -98,6 +98,7 @@ static void put(vs_env *env, const vs_world *placed) {
   vs_sim_place(env->sim, placed);
   vs_sim_world(env->sim, &m->truth);
   vs_referee_restarted(&m->referee, &m->truth);
+  vs_sensors_restart(&m->sensors);
   for (int t = 0; t < VS_TEAMS; t++) vs_control_restart(env->control[t]);
   memset(m->wheels, 0, sizeof m->wheels);
   m->tick = 0;

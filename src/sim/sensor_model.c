@@ -70,6 +70,26 @@ static bool still_valid(vs_sensors *s, int object, bool is_lost) {
   return s->held_frames[object] <= VS_SENSOR_HOLD_FRAMES;
 }
 
+void vs_sensors_restart(vs_sensors *s) { memset(s->filtering, 0, sizeof s->filtering); }
+
+// One more measurement of an object (a lost one is only predicted).
+static void filter(vs_sensors *s, int object, const double value[3], bool is_lost, double acceleration) {
+  static const double unknown_rate[3] = {1.0, 1.0, 10.0}; // m/s, m/s, rad/s
+  const double noise[3] = {VS_NOISE_X_M, VS_NOISE_Y_M, VS_NOISE_HEADING_RAD};
+  const double change[3] = {acceleration, acceleration, VS_SENSOR_TURN_ACCELERATION_RADPS2};
+  for (int k = 0; k < 3; k++) {
+    vs_kalman *f = &s->filter[object][k];
+    if (!s->filtering[object]) {
+      vs_kalman_start(f, value[k], noise[k], unknown_rate[k]);
+      continue;
+    }
+    vs_kalman_predict(f, 1.0 / FRAMES_PER_S, change[k]);
+    double innovation = value[k] - f->value;
+    if (!is_lost) vs_kalman_update(f, k == 2 ? vs_wrap_rad(innovation) : innovation, noise[k]);
+  }
+  s->filtering[object] = true;
+}
+
 void vs_sensors_measure(vs_sensors *s, const vs_world *truth, vs_world *measured) {
   vs_world world = *truth;
   for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
@@ -81,11 +101,20 @@ void vs_sensors_measure(vs_sensors *s, const vs_world *truth, vs_world *measured
     double heading = robot->pose.theta_rad + s->bias_heading_rad + error(s, VS_NOISE_HEADING_RAD);
     robot->pose.theta_rad = vs_wrap_rad(heading);
     if (is_lost) *robot = s->last.robot[team][index];
+    const double pose[3] = {robot->pose.x_m, robot->pose.y_m, robot->pose.theta_rad};
+    filter(s, i, pose, is_lost, VS_SENSOR_ROBOT_ACCELERATION_MPS2);
+    robot->vx_mps = s->filter[i][0].rate;
+    robot->vy_mps = s->filter[i][1].rate;
+    robot->omega_radps = s->filter[i][2].rate;
     robot->valid = still_valid(s, i, is_lost);
   }
   bool ball_lost = lost(s, VS_SENSOR_OBJECTS - 1, world.ball.x_m, world.ball.y_m);
   measure_place(s, &world.ball.x_m, &world.ball.y_m);
   if (ball_lost) world.ball = s->last.ball;
+  const double place[3] = {world.ball.x_m, world.ball.y_m, 0};
+  filter(s, VS_SENSOR_OBJECTS - 1, place, ball_lost, VS_SENSOR_BALL_ACCELERATION_MPS2);
+  world.ball.vx_mps = s->filter[VS_SENSOR_OBJECTS - 1][0].rate;
+  world.ball.vy_mps = s->filter[VS_SENSOR_OBJECTS - 1][1].rate;
   world.ball.valid = still_valid(s, VS_SENSOR_OBJECTS - 1, ball_lost);
   s->last = world;
   s->have_last = true;

@@ -30,28 +30,6 @@ vs_track_def vs_track_def_default(void) {
                         .heading_noise_rad = 0.02};
 }
 
-static void kalman_start(vs_kalman *k, double value, double noise, double rate_deviation) {
-  *k = (vs_kalman){value, 0.0, {noise * noise, 0.0, rate_deviation * rate_deviation}};
-}
-
-// Constant velocity, disturbed by an acceleration that is constant within the step.
-static void kalman_predict(vs_kalman *k, double dt_s, double acceleration) {
-  double q = acceleration * acceleration, dt2 = dt_s * dt_s;
-  k->value += k->rate * dt_s;
-  k->p[0] += dt_s * (2 * k->p[1] + dt_s * k->p[2]) + 0.25 * q * dt2 * dt2;
-  k->p[1] += dt_s * k->p[2] + 0.5 * q * dt2 * dt_s;
-  k->p[2] += q * dt2;
-}
-
-static void kalman_update(vs_kalman *k, double innovation, double noise) {
-  double s = k->p[0] + noise * noise, g0 = k->p[0] / s, g1 = k->p[1] / s;
-  k->value += g0 * innovation;
-  k->rate += g1 * innovation;
-  k->p[2] -= g1 * k->p[1];
-  k->p[1] -= g0 * k->p[1];
-  k->p[0] -= g0 * k->p[0];
-}
-
 static bool fresh(const vs_object *o, int64_t now_us) { return o->seen && now_us - o->seen_us <= VS_TRACK_HOLD_US; }
 
 // Predictions end VS_TRACK_HOLD_US after the last sight.
@@ -63,9 +41,9 @@ static double seconds_ahead(const vs_object *o, int64_t time_us) {
 static void predict(vs_object *o, int64_t time_us, double acceleration, double turn_acceleration) {
   double dt_s = o->seen ? seconds_ahead(o, time_us) : 0;
   if (dt_s <= 0) return;
-  kalman_predict(&o->x, dt_s, acceleration);
-  kalman_predict(&o->y, dt_s, acceleration);
-  if (turn_acceleration > 0) kalman_predict(&o->theta, dt_s, turn_acceleration);
+  vs_kalman_predict(&o->x, dt_s, acceleration);
+  vs_kalman_predict(&o->y, dt_s, acceleration);
+  if (turn_acceleration > 0) vs_kalman_predict(&o->theta, dt_s, turn_acceleration);
   o->time_us += llround(1e6 * dt_s);
 }
 
@@ -75,9 +53,9 @@ typedef struct sight {
 } sight;
 
 static void start_at(vs_object *o, const sight *z, int64_t now_us) {
-  kalman_start(&o->x, z->x_m, z->noise_m, FIRST_SPEED);
-  kalman_start(&o->y, z->y_m, z->noise_m, FIRST_SPEED);
-  kalman_start(&o->theta, z->theta_rad, z->heading_noise_rad, FIRST_TURNING);
+  vs_kalman_start(&o->x, z->x_m, z->noise_m, FIRST_SPEED);
+  vs_kalman_start(&o->y, z->y_m, z->noise_m, FIRST_SPEED);
+  vs_kalman_start(&o->theta, z->theta_rad, z->heading_noise_rad, FIRST_TURNING);
   o->seen = true;
   o->outliers = 0;
   o->time_us = o->seen_us = now_us;
@@ -101,10 +79,10 @@ static bool offer(vs_object *o, const sight *z, int64_t now_us) {
     o->outlier_x = z->x_m, o->outlier_y = z->y_m;
     return false;
   }
-  kalman_update(&o->x, z->x_m - o->x.value, z->noise_m);
-  kalman_update(&o->y, z->y_m - o->y.value, z->noise_m);
+  vs_kalman_update(&o->x, z->x_m - o->x.value, z->noise_m);
+  vs_kalman_update(&o->y, z->y_m - o->y.value, z->noise_m);
   if (z->heading_noise_rad > 0)
-    kalman_update(&o->theta, vs_wrap_rad(z->theta_rad - o->theta.value), z->heading_noise_rad);
+    vs_kalman_update(&o->theta, vs_wrap_rad(z->theta_rad - o->theta.value), z->heading_noise_rad);
   o->outliers = 0;
   o->time_us = o->seen_us = now_us;
   return true;

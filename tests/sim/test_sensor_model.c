@@ -239,6 +239,32 @@ static void same_seed_same_measurements_and_copy_continues(void **state) {
   assert_true(vs_world_hash(VS_HASH_START, &seen_a) != vs_world_hash(VS_HASH_START, &seen_b));
 }
 
+// The truth claims to stand still while its places move: velocities come from the places that were seen, as on a field,
+// and begin anew after a placement.
+static void velocities_are_estimated_from_what_was_measured(void **state) {
+  (void)state;
+  vs_realism realism = silent();
+  vs_sensors sensors;
+  vs_world seen;
+  vs_sensors_reset(&sensors, &realism, 3);
+  for (int k = 0; k < 60; k++) {
+    vs_world truth = truth_at_rest();
+    truth.robot[1][0].pose.x_m += 0.01 * k;                                                     // 0.3 m/s
+    truth.robot[1][0].pose.theta_rad = vs_wrap_rad(truth.robot[1][0].pose.theta_rad + 0.1 * k); // 3 rad/s
+    truth.ball.y_m += 0.02 * k;                                                                 // 0.6 m/s
+    vs_sensors_measure(&sensors, &truth, &seen);
+  }
+  assert_near(seen.robot[1][0].vx_mps, 0.3, 1e-6);
+  assert_near(seen.robot[1][0].omega_radps, 3, 1e-3);
+  assert_near(seen.ball.vy_mps, 0.6, 1e-6);
+  assert_near(seen.robot[1][1].vx_mps, 0, 1e-6);
+  vs_sensors_restart(&sensors);
+  vs_world placed = truth_at_rest();
+  vs_sensors_measure(&sensors, &placed, &seen);
+  assert_near(seen.ball.vy_mps, 0, 0);
+  assert_near(seen.robot[1][0].vx_mps, 0, 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(default_noise_has_the_papers_deviations),
@@ -250,6 +276,7 @@ int main(void) {
       cmocka_unit_test(commands_arrive_at_once_by_default),
       cmocka_unit_test(latency_is_kept_to_a_fraction_of_a_frame),
       cmocka_unit_test(longest_latency_still_arrives),
+      cmocka_unit_test(velocities_are_estimated_from_what_was_measured),
       cmocka_unit_test(lost_radio_frames_keep_the_last_command),
       cmocka_unit_test(same_seed_same_measurements_and_copy_continues),
   };
