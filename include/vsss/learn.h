@@ -47,8 +47,8 @@ typedef struct vs_train_def {
   char hidden[64];    // layer sizes, such as "256,256"
   double first_shape;
   char learner[16]; // own or torch
-  // Of the products in the own learner's backward pass: fp32, bf16 (needs oneDNN and AVX512-BF16), or auto (bf16 where
-  // they are; ranks on machines of several kinds set one).
+  // Of the products in the own learner's backward pass: fp32, bf16 (needs oneDNN and AVX512-BF16), or auto: both are
+  // timed when the run begins and the faster one becomes its setting.
   char precision[16];
   // How long.
   double transitions_m; // millions; 0: until stopped
@@ -113,7 +113,7 @@ vs_status vs_train_imitate(vs_train *train, const char *uri, int updates,
 bool vs_train_done(const vs_train *train); // transitions_m reached
 double vs_train_updates(const vs_train *train);
 double vs_train_transitions(const vs_train *train);
-const char *vs_train_products(const vs_train *train); // such as "gradients in bf16 by oneDNN"
+const char *vs_train_products(const vs_train *train); // such as "gradients in bf16 by oneDNN (...)"
 const vs_train_def *vs_train_settings(const vs_train *train);
 // Results against kind k of the opponent mix: its name, episodes, win, draw, loss so far, recent mean goal difference.
 typedef struct vs_train_opponent {

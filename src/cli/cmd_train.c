@@ -285,7 +285,7 @@ static vs_status prepare(session *s, const vs_train_def *def, vs_error *err) {
   if (status != VS_OK || !s->first) return status;
   char text[4096];
   snprintf(path, sizeof path, "%s/settings.ini", s->folder);
-  vs_train_def_text(def, text, sizeof text);
+  vs_train_def_text(vs_train_settings(s->train), text, sizeof text);
   FILE *f = fopen(path, "w");
   if (!f || fputs(text, f) == EOF || fclose(f) != 0) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
   return vs_journal_open(s->folder, vs_train_updates(s->train), &s->journal, err);

@@ -1,9 +1,11 @@
 // The training loop: play a batch, learn from it, let the league look at the result.
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "export.h"
+#include "precision.h"
 #include "reward_mix.h"
 #include "torch_engine.h"
 #include "train_internal.h"
@@ -29,14 +31,32 @@ static vs_learner_def learner_def(const vs_train_def *def, const vs_net_shape *s
                           .pieces = def->pieces};
 }
 
-// Ranks that average their gradients compute them alike.
-static vs_status check_precision(const vs_train *t, vs_error *err) {
-  double with_bf16 = t->learner.bf16 != NULL;
-  if (!t->group) return VS_OK;
-  vs_status s = t->group->sum_doubles(t->group->self, &with_bf16, 1, err);
-  if (s != VS_OK || with_bf16 == 0.0 || with_bf16 == vs_group_size(t->group)) return s;
-  return vs_fail(err, VS_USAGE, "precision = auto: %.0f of %d ranks have bf16: --set precision=fp32", with_bf16,
-                 vs_group_size(t->group));
+// precision = auto becomes the faster one, and the run's setting: a run that is resumed computes as it began. Ranks that
+// average their gradients compute them alike.
+static vs_status choose_precision(vs_train *t, vs_learner_def *def, vs_error *err) {
+  vs_status s = vs_train_precision(&t->def, &def->precision, err);
+  if (s != VS_OK || def->precision != VS_PRECISION_AUTO) return s;
+  vs_precision_times times;
+  s = vs_precision_time(def, t->pool, &times, err);
+  double sums[2] = {times.fp32_s, times.bf16_s};
+  if (s == VS_OK && t->group) s = t->group->sum_doubles(t->group->self, sums, 2, err);
+  bool bf16 = sums[1] < sums[0];
+  def->precision = bf16 ? VS_PRECISION_BF16 : VS_PRECISION_FP32;
+  snprintf(t->def.precision, sizeof t->def.precision, "%s", bf16 ? "bf16" : "fp32");
+  if (s == VS_OK && isfinite(sums[1]))
+    snprintf(t->products_times, sizeof t->products_times, " (a minibatch: bf16 %.1f ms, fp32 %.1f ms)",
+             1e3 * times.bf16_s, 1e3 * times.fp32_s);
+  return s;
+}
+
+static void name_products(vs_train *t) {
+  const vs_learner *l = &t->learner;
+  bool onednn = l->blas.dnnl_sgemm != NULL;
+  const char *name = l->engine ? "libtorch"
+                     : l->bf16 ? "gradients in bf16 by oneDNN"
+                     : onednn  ? "gradients in fp32 by oneDNN"
+                               : "gradients in fp32 by OpenBLAS";
+  snprintf(t->products, sizeof t->products, "%s%s", name, t->products_times);
 }
 
 static vs_status make_learner(vs_train *t, vs_error *err) {
@@ -44,13 +64,13 @@ static vs_status make_learner(vs_train *t, vs_error *err) {
   vs_status s = vs_train_hidden(&t->def, &shape, err);
   if (s != VS_OK) return s;
   vs_learner_def def = learner_def(&t->def, &shape);
-  s = vs_train_precision(&t->def, &def.precision, err);
-  if (s != VS_OK) return s;
+  s = vs_pool_new(t->def.threads, &t->pool, err);
   if (!strcmp(t->def.learner, "torch")) {
     def.precision = VS_PRECISION_FP32;
     def.block = def.minibatch; // it gains nothing from small ones
+  } else if (s == VS_OK) {
+    s = choose_precision(t, &def, err);
   }
-  s = vs_pool_new(t->def.threads, &t->pool, err);
   if (s == VS_OK) s = vs_learner_init(&t->learner, &def, t->pool, (uint64_t)t->def.seed, err);
   if (s != VS_OK) return s;
   t->learner.group = t->group;
@@ -58,6 +78,7 @@ static vs_status make_learner(vs_train *t, vs_error *err) {
     s = vs_torch_engine_open(&t->engine, err);
     t->learner.engine = &t->engine;
   }
+  name_products(t);
   return s;
 }
 
@@ -97,7 +118,6 @@ vs_status vs_train_new_over(const vs_train_def *def, const vs_matches *matches, 
   if (s == VS_OK) s = vs_reward_mix_parse(def->reward, &t->reward_start, err);
   if (s == VS_OK) s = vs_reward_mix_parse(def->reward_end, &t->reward_end, err);
   if (s == VS_OK) s = make_learner(t, err);
-  if (s == VS_OK) s = check_precision(t, err);
   if (s == VS_OK) s = make_league_and_rollout(t, err);
   if (s == VS_OK && !matches) s = vs_train_matches_open(def, &t->league, vs_group_rank(group), NULL, &t->matches, err);
   if (s != VS_OK) {
@@ -259,14 +279,7 @@ double vs_train_updates(const vs_train *train) { return (double)train->updates; 
 
 double vs_train_transitions(const vs_train *train) { return (double)train->transitions; }
 
-const char *vs_train_products(const vs_train *train) {
-  const vs_learner *l = &train->learner;
-  if (l->engine) return "libtorch";
-  bool onednn = l->blas.dnnl_sgemm != NULL;
-  return l->bf16  ? "gradients in bf16 by oneDNN"
-         : onednn ? "gradients in fp32 by oneDNN"
-                  : "gradients in fp32 by OpenBLAS";
-}
+const char *vs_train_products(const vs_train *train) { return train->products; }
 
 const vs_train_def *vs_train_settings(const vs_train *train) { return &train->def; }
 

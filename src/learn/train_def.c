@@ -159,7 +159,7 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       TEXT(hidden, "layer sizes of both networks"),
       REAL(first_shape, 1.01, 100, "alpha = beta of the untrained policy"),
       TEXT(learner, "own (kernels over BLAS) or torch"),
-      TEXT(precision, "own learner's backward pass: fp32, bf16, or auto (bf16 where oneDNN and the processor have it)"),
+      TEXT(precision, "own learner's backward pass: fp32, bf16, or auto: the faster one here, tried at the start"),
       REAL(transitions_m, 0, 1e9, "millions of transitions to stop at; 0: until stopped"),
       {.name = NULL},
   };

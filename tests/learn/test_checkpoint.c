@@ -15,6 +15,7 @@ static char folder[64], file[96], previous[112];
 
 static vs_train_def tiny_def(void) {
   vs_train_def def = vs_train_def_default();
+  snprintf(def.precision, sizeof def.precision, "fp32"); // auto may choose another one each time
   snprintf(def.hidden, sizeof def.hidden, "8,8");
   snprintf(def.opponent, sizeof def.opponent, "self=0.4,pool=0.3,frozen=0.3");
   def.envs = 10;

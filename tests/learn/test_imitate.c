@@ -8,6 +8,7 @@
 
 static vs_train *open_tiny(void) {
   vs_train_def def = vs_train_def_default();
+  snprintf(def.precision, sizeof def.precision, "fp32"); // auto may choose another one each time
   snprintf(def.hidden, sizeof def.hidden, "16,16");
   snprintf(def.opponent, sizeof def.opponent, "frozen");
   def.envs = 16;

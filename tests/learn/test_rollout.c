@@ -25,6 +25,7 @@ static void the_scale_follows_the_returns(void **state) {
 
 static vs_train *open_tiny(const char *opponent, int length) {
   vs_train_def def = vs_train_def_default();
+  snprintf(def.precision, sizeof def.precision, "fp32"); // auto may choose another one each time
   snprintf(def.hidden, sizeof def.hidden, "8,8");
   snprintf(def.opponent, sizeof def.opponent, "%s", opponent);
   snprintf(def.reward, sizeof def.reward, "goals,progress=1");

@@ -7,6 +7,7 @@
 
 static vs_train_def tiny_def(void) {
   vs_train_def def = vs_train_def_default();
+  snprintf(def.precision, sizeof def.precision, "fp32"); // auto may choose another one each time
   snprintf(def.hidden, sizeof def.hidden, "16,16");
   snprintf(def.opponent, sizeof def.opponent, "frozen");
   snprintf(def.reward, sizeof def.reward, "dense,progress=1,approach=0,distance=0,own_distance=0");
