@@ -46,7 +46,8 @@ vs_player *vs_control_player(vs_control *control);         // NULL for an extern
 // Snapshots: state is a block of vs_control_state_size bytes of the caller. Size 0: its player cannot be snapshotted.
 size_t vs_control_state_size(const vs_control *control);
 void vs_control_save(const vs_control *control, void *state);
-void vs_control_restore(vs_control *control, const void *state);
+// VS_FAIL: a number that cannot be; the control is then as it was, its player perhaps reset.
+vs_status vs_control_restore(vs_control *control, const void *state, vs_error *err);
 
 #ifdef __cplusplus
 }

@@ -77,7 +77,8 @@ uint64_t vs_env_hash(const vs_env *env); // of all true worlds since the reset
 // Snapshots, to be restored into an env of the same def and players.
 size_t vs_env_state_size(const vs_env *env); // 0: a player that cannot be snapshotted
 void vs_env_save(const vs_env *env, void *state);
-void vs_env_restore(vs_env *env, const void *state);
+// VS_FAIL: a number that cannot be, as in a damaged file; the env must then be reset.
+vs_status vs_env_restore(vs_env *env, const void *state, vs_error *err);
 
 #ifdef __cplusplus
 }

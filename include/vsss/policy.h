@@ -46,7 +46,8 @@ vs_status vs_player_act(vs_player *player, const float *obs, int rows, float *ac
 // Snapshots: state is a block of vs_player_state_size bytes of the caller. Size 0: this player cannot be snapshotted.
 size_t vs_player_state_size(const vs_player *player);
 void vs_player_save(const vs_player *player, void *state);
-void vs_player_restore(vs_player *player, const void *state);
+// VS_FAIL: no snapshot of such a player (an index or an enumeration out of its range); the player is then reset.
+vs_status vs_player_restore(vs_player *player, const void *state, vs_error *err);
 
 // A scheme that needs another module (lcm:), registered once at start, before any thread; a scheme that is known
 // already is left as it is. open gets the text after the colon (valid as long as the player) and fills out, which comes

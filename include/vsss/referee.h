@@ -58,6 +58,8 @@ typedef struct vs_referee {
 
 // game.last_event is then the first KICK_OFF, which wants vs_place. VS_USAGE: a number out of range.
 vs_status vs_referee_init(vs_referee *referee, const vs_referee_def *def, vs_error *err);
+// Whether a copy, of a match of this def, can be gone on from: false for numbers that no match has, as in a damaged file.
+bool vs_referee_ok(const vs_referee *referee, const vs_referee_def *def);
 // Time goes on by dt_s and the true world is judged. Returns what happened (VS_EVENT_NONE mostly); game is up to date.
 // GOAL, PENALTY, FREE_BALL, GOAL_KICK and HALF_TIME want vs_place and vs_referee_restarted, unless the match is over.
 // It is over after END (time is up) and after a GOAL that ends it (first goal of an episode, goal difference, or time

@@ -75,6 +75,8 @@ typedef struct vs_sensors {
 
 // A new episode from this seed; give params to vs_sim_reset.
 void vs_sensors_reset(vs_sensors *sensors, const vs_realism *realism, uint64_t seed);
+// Whether they can be gone on from: false for numbers that no reset and no frame makes, as in a damaged file.
+bool vs_sensors_ok(const vs_sensors *sensors);
 // Velocities are those that a Kalman filter of the measured poses estimates, as on the field; wheel speeds are not seen
 // by a camera and become 0.
 void vs_sensors_measure(vs_sensors *sensors, const vs_world *truth, vs_world *measured);

@@ -68,7 +68,8 @@ void *vs_sim_mjdata(vs_sim *sim);                    // mjData *, for the render
 
 size_t vs_sim_state_size(const vs_sim *sim);
 void vs_sim_save(const vs_sim *sim, void *state);
-void vs_sim_restore(vs_sim *sim, const void *state); // continues bit-identically
+// Continues bit-identically. VS_FAIL: a number that cannot be; the simulator is then as it was.
+vs_status vs_sim_restore(vs_sim *sim, const void *state, vs_error *err);
 
 #ifdef __cplusplus
 }

@@ -72,7 +72,8 @@ uint64_t vs_vecenv_hash(const vs_vecenv *vec); // of all true worlds of the pres
 // cannot be snapshotted.
 size_t vs_vecenv_state_size(const vs_vecenv *vec);
 void vs_vecenv_save(const vs_vecenv *vec, void *state);
-void vs_vecenv_restore(vs_vecenv *vec, const void *state);
+// VS_FAIL: a number that cannot be, as in a damaged file; the vecenv must then be reset.
+vs_status vs_vecenv_restore(vs_vecenv *vec, const void *state, vs_error *err);
 
 #ifdef __cplusplus
 }

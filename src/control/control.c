@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "vsss/check.h"
 #include "vsss/geom.h"
 #include "vsss/rng.h"
 
@@ -169,7 +170,30 @@ void vs_control_save(const vs_control *control, void *out) {
   if (control->player) vs_player_save(control->player, (char *)out + sizeof(state));
 }
 
-void vs_control_restore(vs_control *control, const void *in) {
-  memcpy(&control->now, in, sizeof control->now);
-  if (control->player) vs_player_restore(control->player, (const char *)in + sizeof(state));
+static bool metronome_ok(const metronome *m, const metronome *mine) {
+  return m->period_s == mine->period_s && vs_all_finite(&m->since_s, 1) && vs_are_bools(&m->fresh, 1);
+}
+
+// mine: of the same player.
+static bool state_ok(const state *s, const state *mine) {
+  const vs_observer *o = &s->observer;
+  return o->newest >= 0 && o->newest < VS_OBS_STACK && (o->filled == 0 || o->filled == VS_OBS_STACK) &&
+         vs_is_permutation(o->adversary_order, VS_TEAM_SIZE) &&
+         vs_all_finite_floats(&o->frame[0][0][0], sizeof o->frame / sizeof(float)) &&
+         metronome_ok(&s->decide, &mine->decide) && metronome_ok(&s->observe, &mine->observe) &&
+         vs_all_finite(&s->since_decision_s, 1) && vs_are_bools(&s->played, 1) &&
+         vs_all_finite_floats(s->action, VS_TEAM_SIZE * VS_ACTION_SIZE) &&
+         vs_all_finite(&s->wheels[0].left_radps, 2 * VS_TEAM_SIZE);
+}
+
+vs_status vs_control_restore(vs_control *control, const void *in, vs_error *err) {
+  state read;
+  memcpy(&read, in, sizeof read);
+  if (!state_ok(&read, &control->now)) return vs_fail(err, VS_FAIL, "the snapshot of a team is damaged");
+  if (control->player) {
+    vs_status status = vs_player_restore(control->player, (const char *)in + sizeof(state), err);
+    if (status != VS_OK) return status;
+  }
+  control->now = read;
+  return VS_OK;
 }

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "vsss/check.h"
+
 #define FRAMES_PER_DECISION (VS_CAMERA_HZ / VS_DECISION_HZ)
 #define FRAME_S             (1.0 / VS_CAMERA_HZ)
 
@@ -313,14 +315,36 @@ void vs_env_save(const vs_env *env, void *state) {
   }
 }
 
-void vs_env_restore(vs_env *env, const void *state) {
+static bool world_ok(const vs_world *w) {
+  bool ok = vs_all_finite(&w->ball.x_m, 6) && vs_are_bools(&w->ball.valid, 1);
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
+    const vs_robot *r = &w->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+    ok = ok && vs_all_finite(&r->pose.x_m, 8) && vs_are_bools(&r->valid, 1);
+  }
+  return ok && llabs(w->time_us) < INT64_C(1) << 53;
+}
+
+static bool match_ok(const match *m, const vs_env_def *def) {
+  return vs_referee_ok(&m->referee, &def->referee) && vs_sensors_ok(&m->sensors) && world_ok(&m->truth) &&
+         world_ok(&m->judged) && world_ok(&m->measured) && world_ok(&m->sensors.last) &&
+         vs_all_finite(&m->wheels[0][0].left_radps, sizeof m->wheels / sizeof(double)) &&
+         vs_are_bools(m->decided, VS_TEAMS) &&
+         vs_all_finite(&m->commanded[0][0][0], sizeof m->commanded / sizeof(double)) && m->commanded_frames >= 0 &&
+         m->commanded_frames <= FRAMES_PER_DECISION && m->tick >= 0 && m->tick < 1000000000;
+}
+
+vs_status vs_env_restore(vs_env *env, const void *state, vs_error *err) {
   const unsigned char *at = state;
-  memcpy(&env->m, at, sizeof env->m);
+  match read;
+  memcpy(&read, at, sizeof read);
+  if (!match_ok(&read, &env->def)) return vs_fail(err, VS_FAIL, "the snapshot of a match is damaged");
   at += aligned(sizeof env->m);
-  vs_sim_restore(env->sim, at);
+  vs_status s = vs_sim_restore(env->sim, at, err);
   at += aligned(vs_sim_state_size(env->sim));
-  for (int t = 0; t < VS_TEAMS; t++) {
-    vs_control_restore(env->control[t], at);
+  for (int t = 0; s == VS_OK && t < VS_TEAMS; t++) {
+    s = vs_control_restore(env->control[t], at, err);
     at += aligned(vs_control_state_size(env->control[t]));
   }
+  if (s == VS_OK) env->m = read;
+  return s;
 }

@@ -291,11 +291,13 @@ void vs_vecenv_save(const vs_vecenv *vec, void *state) {
   for (int i = 0; i < vec->envs; at += vs_env_state_size(vec->env[i]), i++) vs_env_save(vec->env[i], at);
 }
 
-void vs_vecenv_restore(vs_vecenv *vec, const void *state) {
+vs_status vs_vecenv_restore(vs_vecenv *vec, const void *state, vs_error *err) {
   const unsigned char *at = state;
   size_t size = (size_t)vec->envs * sizeof(uint64_t);
   memcpy(vec->match_seed, at, size);
   memcpy(vec->episode, at + size, size);
   at += numbers_size(vec);
-  for (int i = 0; i < vec->envs; at += vs_env_state_size(vec->env[i]), i++) vs_env_restore(vec->env[i], at);
+  for (int i = 0; i < vec->envs; at += vs_env_state_size(vec->env[i]), i++)
+    if (vs_env_restore(vec->env[i], at, err) != VS_OK) return vs_fail_prefix(err, "match %d", i);
+  return VS_OK;
 }

@@ -1,12 +1,15 @@
 // Saves and restores a training run, bit for bit.
 #include <limits.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "archive.h"
+#include "league_file.h"
 #include "train_internal.h"
+#include "vsss/check.h"
 #include "vsss/contract.h"
 
 // The numbers of a run that are no arrays.
@@ -15,41 +18,6 @@ typedef struct counters {
   double wall_s;
   vs_value_scale scale;
 } counters;
-
-typedef struct league_state {
-  int32_t selves, frozen, next_id, replacements, window_at, window_filled;
-  double window[VS_LEAGUE_WINDOW];
-  vs_league_record record[VS_LEAGUE_KINDS_MAX];
-} league_state;
-
-typedef struct self_state {
-  int32_t id, in_pool, users;
-  double beaten;
-} self_state;
-
-static void save_league(const vs_league *l, vs_bytes *out) {
-  league_state state;
-  memset(&state, 0, sizeof state); // padding too: equal runs, equal files
-  state.selves = l->selves, state.frozen = l->frozen, state.next_id = l->next_id;
-  state.replacements = l->replacements, state.window_at = l->window_at, state.window_filled = l->window_filled;
-  memcpy(state.window, l->window, sizeof state.window);
-  memcpy(state.record, l->record, sizeof state.record);
-  vs_archive_section(out, "league", &state, sizeof state);
-  vs_archive_section(out, "slots", l->slot, (size_t)l->slots * sizeof *l->slot);
-  size_t each = sizeof(self_state) + l->size * sizeof(float);
-  uint8_t *at = vs_archive_room(out, "selves", (size_t)l->selves * each);
-  for (int i = 0; at && i < l->selves; i++, at += each) {
-    self_state self;
-    memset(&self, 0, sizeof self);
-    self.id = l->self[i].id, self.in_pool = l->self[i].in_pool, self.users = l->self[i].users;
-    self.beaten = l->self[i].beaten;
-    memcpy(at, &self, sizeof self);
-    if (self.id) // a free place keeps nothing worth saving
-      memcpy(at + sizeof self, l->self[i].parameters, l->size * sizeof(float));
-    else
-      memset(at + sizeof self, 0, l->size * sizeof(float));
-  }
-}
 
 // What every checkpoint holds: settings, counters, networks, Adam.
 static void save_learner(const vs_train *train, vs_bytes *out) {
@@ -89,7 +57,7 @@ static vs_status add_matches(const vs_train *train, vs_bytes *out, vs_error *err
 static vs_status save_whole(const vs_train *train, vs_bytes *out, vs_error *err) {
   save_learner(train, out);
   if (!train->started) return VS_OK;
-  save_league(&train->league, out);
+  vs_league_save(&train->league, out);
   return add_matches(train, out, err);
 }
 
@@ -183,46 +151,18 @@ static vs_status load_floats(const vs_bytes *archive, const char *path, const ch
                              vs_error *err) {
   const void *data;
   vs_status s = vs_archive_find(archive, path, name, count * sizeof *out, &data, NULL, err);
-  if (s == VS_OK) memcpy(out, data, count * sizeof *out);
-  return s;
+  if (s != VS_OK) return s;
+  memcpy(out, data, count * sizeof *out);
+  return vs_all_finite_floats(out, count) ? VS_OK
+                                          : vs_fail(err, VS_FAIL, "%s: '%s' holds what is no number", path, name);
 }
 
-static vs_status load_selves(vs_league *l, const uint8_t *at, int count, vs_error *err) {
-  vs_frozen_self *grown = realloc(l->self, (size_t)(count > l->selves ? count : l->selves) * sizeof *grown);
-  if (!grown && count > 0) return vs_fail(err, VS_FAIL, "out of memory for %d frozen opponents", count);
-  if (grown) l->self = grown;
-  for (; l->selves < count; l->selves++) l->self[l->selves] = (vs_frozen_self){0};
-  for (int i = 0; i < l->selves; i++) {
-    vs_frozen_self *self = &l->self[i];
-    self_state state = {0};
-    if (i < count) memcpy(&state, at, sizeof state);
-    self->id = state.id, self->in_pool = state.in_pool, self->users = state.users, self->beaten = state.beaten;
-    if (i >= count) continue;
-    if (!self->parameters) self->parameters = malloc(l->size * sizeof(float));
-    if (!self->parameters) return vs_fail(err, VS_FAIL, "out of memory for %d frozen opponents", count);
-    memcpy(self->parameters, at + sizeof state, l->size * sizeof(float));
-    at += sizeof state + l->size * sizeof(float);
-  }
-  return VS_OK;
-}
-
-static vs_status load_league(vs_league *l, const vs_bytes *archive, const char *path, vs_error *err) {
-  const void *data, *slots, *selves;
-  league_state state;
-  vs_status s = vs_archive_find(archive, path, "league", sizeof state, &data, NULL, err);
-  if (s != VS_OK) return s;
-  memcpy(&state, data, sizeof state);
-  s = vs_archive_find(archive, path, "slots", (size_t)l->slots * sizeof *l->slot, &slots, NULL, err);
-  size_t size = (size_t)state.selves * (sizeof(self_state) + l->size * sizeof(float)), found = 0;
-  if (s == VS_OK) s = vs_archive_find(archive, path, "selves", size, &selves, &found, err);
-  if (s == VS_OK) s = load_selves(l, selves, state.selves, err);
-  if (s != VS_OK) return s;
-  memcpy(l->slot, slots, (size_t)l->slots * sizeof *l->slot);
-  l->frozen = state.frozen, l->next_id = state.next_id, l->replacements = state.replacements;
-  l->window_at = state.window_at, l->window_filled = state.window_filled;
-  memcpy(l->window, state.window, sizeof state.window);
-  memcpy(l->record, state.record, sizeof state.record);
-  return VS_OK;
+// Numbers that a run has. on is a bool: it is what the settings say, not what the file does.
+static bool counters_ok(const counters *c) {
+  const vs_value_scale *v = &c->scale;
+  return c->updates >= 0 && c->transitions >= 0 && c->adam_steps >= 0 && c->decision >= 0 &&
+         c->updates < INT64_C(1) << 53 && c->transitions < INT64_C(1) << 53 && isfinite(c->wall_s) &&
+         c->wall_s >= 0.0 && vs_all_finite(&v->mean, 5) && v->deviation > 0.0 && v->weight >= 0.0;
 }
 
 static vs_status load_matches(vs_train *t, const vs_bytes *archive, const char *path, vs_error *err) {
@@ -237,7 +177,8 @@ static vs_status load_matches(vs_train *t, const vs_bytes *archive, const char *
   if (!state) s = vs_fail(err, VS_FAIL, "%s: out of memory", path);
   if (s == VS_OK) {
     memcpy(state, data, size);
-    t->matches.restore(t->matches.self, state);
+    s = t->matches.restore(t->matches.self, state, err);
+    if (s != VS_OK) vs_fail_prefix(err, "%s: 'matches'", path);
   }
   free(state);
   size_t observations = (size_t)VS_VECENV_ROWS(t->def.envs) * VS_OBS_SIZE;
@@ -267,11 +208,13 @@ static vs_status load(vs_train *t, const vs_bytes *archive, const char *path, vs
   if (s == VS_OK) s = vs_archive_find(archive, path, "counters", sizeof numbers, &data, NULL, err);
   if (s != VS_OK) return s;
   memcpy(&numbers, data, sizeof numbers);
+  if (!counters_ok(&numbers)) return vs_fail(err, VS_FAIL, "%s: 'counters' holds a number that no run has", path);
+  numbers.scale.on = t->def.value_scale;
   s = load_floats(archive, path, "parameters", l->parameters, l->net.size, err);
   if (s == VS_OK) s = load_floats(archive, path, "mean", l->mean, l->net.size, err);
   if (s == VS_OK) s = load_floats(archive, path, "square", l->square, l->net.size, err);
   bool slim = vs_archive_find(archive, path, "league", 0, &data, NULL, NULL) != VS_OK;
-  if (s == VS_OK && !slim) s = load_league(&t->league, archive, path, err);
+  if (s == VS_OK && !slim) s = vs_league_load(&t->league, archive, path, err);
   if (s == VS_OK && slim) vs_train_hand_over(t);
   // The file holds the matches of rank 0; other ranks start theirs anew, and their slots' episodes with them.
   if (s == VS_OK && !slim && vs_group_rank(t->group) == 0) s = load_matches(t, archive, path, err);

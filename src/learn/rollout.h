@@ -17,7 +17,7 @@ typedef struct vs_matches {
   vs_status (*step)(void *self, const vs_vecenv_buffers *buffers, vs_error *err);
   size_t (*state_size)(const void *self);
   void (*save)(const void *self, void *state);
-  void (*restore)(void *self, const void *state);
+  vs_status (*restore)(void *self, const void *state, vs_error *err);
   void (*free)(void *self);
 } vs_matches;
 

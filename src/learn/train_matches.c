@@ -19,7 +19,9 @@ static vs_status step(void *self, const vs_vecenv_buffers *buffers, vs_error *er
 }
 static size_t state_size(const void *self) { return vs_vecenv_state_size(((const sim_matches *)self)->vec); }
 static void save(const void *self, void *state) { vs_vecenv_save(((const sim_matches *)self)->vec, state); }
-static void restore(void *self, const void *state) { vs_vecenv_restore(((sim_matches *)self)->vec, state); }
+static vs_status restore(void *self, const void *state, vs_error *err) {
+  return vs_vecenv_restore(((sim_matches *)self)->vec, state, err);
+}
 
 static void free_matches(void *self) {
   sim_matches *m = self;

@@ -249,6 +249,11 @@ void vs_player_save(const vs_player *player, void *state) {
     memset(state, 0, 1);
 }
 
-void vs_player_restore(vs_player *player, const void *state) {
-  if (player->api) memcpy(player->state, state, player->api->state_size);
+vs_status vs_player_restore(vs_player *player, const void *state, vs_error *err) {
+  if (!player->api) return VS_OK;
+  // Into aligned memory before anything of it is read.
+  memcpy(player->state, state, player->api->state_size);
+  if (vs_player_state_ok(player->api, player->state)) return VS_OK;
+  vs_status reset = vs_player_reset(player, 0, err);
+  return reset != VS_OK ? reset : vs_fail(err, VS_FAIL, "player %s: the snapshot is damaged", player->uri);
 }

@@ -38,6 +38,9 @@ vs_status vs_plugin_step(vs_plugin *plugin, void *state, const vs_world *world, 
 vs_status vs_plugin_free_state(vs_plugin *plugin, void *state, vs_error *err);
 void vs_plugin_close(vs_plugin *plugin);
 
+// state_check.c: whether a built-in player can go on from a snapshot that came from a file.
+bool vs_player_state_ok(const vsss_player_api *api, const void *state);
+
 // plugin_guard.c: runs call(argument); 0, or the number of the fatal signal that ended it.
 int vs_guard_run(void (*call)(void *argument), void *argument);
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "referee_internal.h"
+#include "vsss/check.h"
 #include "vsss/field.h"
 #include "vsss/geom.h"
 
@@ -56,6 +57,27 @@ vs_status vs_referee_init(vs_referee *referee, const vs_referee_def *def, vs_err
   referee->game.last_event = (vs_event){.kind = VS_EVENT_KICK_OFF, .team = def->kick_off};
   forget(referee);
   return VS_OK;
+}
+
+static bool is_team(vs_team team) { return (int)team == VS_BLUE || (int)team == VS_YELLOW; }
+
+static bool game_ok(const vs_game *g) {
+  const vs_event *e = &g->last_event;
+  bool ok = vs_all_finite(&g->time_s, 1) && vs_all_finite(&g->duration_s, 1) && vs_all_finite(&e->time_s, 1);
+  for (int t = 0; t < VS_TEAMS; t++) ok = ok && g->score[t] >= 0 && g->score[t] < 1000000;
+  return ok && (int)e->kind >= 0 && (int)e->kind < VS_EVENT_KINDS && is_team(e->team) && e->quadrant >= 0 &&
+         e->quadrant <= 4;
+}
+
+bool vs_referee_ok(const vs_referee *r, const vs_referee_def *def) {
+  const vs_referee_def *d = &r->def;
+  bool same = d->rules == def->rules && d->placement == def->placement && d->duration_s == def->duration_s &&
+              d->goal_difference_stop == def->goal_difference_stop && vs_are_bools(&d->end_at_first_goal, 1) &&
+              d->end_at_first_goal == def->end_at_first_goal && d->halves == def->halves &&
+              d->kick_off == def->kick_off;
+  return same && game_ok(&r->game) && vs_are_bools(&r->over, 1) && is_team(r->kick_off) && r->half >= 0 &&
+         r->half <= 1 && vs_all_finite(&r->still_x_m, 3) && r->play_area >= -1 && r->play_area < VS_TEAMS &&
+         vs_all_finite(&r->defence_s, 4);
 }
 
 void vs_referee_restarted(vs_referee *referee, const vs_world *world) {

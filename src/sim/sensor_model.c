@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "vsss/check.h"
 #include "vsss/field.h"
 #include "vsss/geom.h"
 
@@ -35,6 +36,21 @@ void vs_sensors_reset(vs_sensors *sensors, const vs_realism *realism, uint64_t s
   sensors->radio_loss = draw(&sensors->rng, realism->radio_loss);
   sensors->detection_burst_frames = realism->detection_burst_frames;
   sensors->radio_burst_frames = realism->radio_burst_frames;
+}
+
+static bool bursts_ok(const vs_range *frames) {
+  return vs_all_finite(&frames->low, 2) && frames->low >= 0 && frames->low <= frames->high && frames->high <= 1e6;
+}
+
+bool vs_sensors_ok(const vs_sensors *s) {
+  bool ok = vs_are_bools(&s->noise, 1) && vs_are_bools(&s->have_last, 1) && vs_all_finite(&s->noise_scale, 9) &&
+            bursts_ok(&s->detection_burst_frames) && bursts_ok(&s->radio_burst_frames) &&
+            vs_all_finite(&s->queue[0][0][0].left_radps, sizeof s->queue / sizeof(double)) &&
+            vs_all_finite(&s->applied[0][0].left_radps, sizeof s->applied / sizeof(double));
+  for (int i = 0; i < VS_SENSOR_OBJECTS; i++)
+    ok = ok && s->lost_frames[i] >= 0 && s->held_frames[i] >= 0 && s->held_frames[i] < 1000000000;
+  for (int t = 0; t < VS_TEAMS; t++) ok = ok && s->radio_lost_frames[t] >= 0;
+  return ok;
 }
 
 // Length of a loss that begins now, in whole frames, this one included.

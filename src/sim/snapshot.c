@@ -4,6 +4,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "vsss/check.h"
+
 typedef struct snapshot {
   vs_sim_params params;
   uint32_t frame;
@@ -28,9 +30,21 @@ void vs_sim_save(const vs_sim *sim, void *state) {
   memcpy(at + nq + 2 * nv, sim->data->qfrc_constraint, nv);
 }
 
-void vs_sim_restore(vs_sim *sim, const void *state) {
+static bool params_ok(const vs_sim_params *p) {
+  // All but the seed at the end are doubles; what is divided by is above 0.
+  return vs_all_finite((const double *)p, offsetof(vs_sim_params, push_seed) / sizeof(double)) &&
+         p->floor_friction_scale > 0.0 && p->robot_mass_scale > 0.0 && p->ball_mass_scale > 0.0 &&
+         p->ball_restitution >= 0.0 && p->motor_tau_s >= 0.0 && p->push_per_s >= 0.0;
+}
+
+vs_status vs_sim_restore(vs_sim *sim, const void *state, vs_error *err) {
   snapshot head;
   memcpy(&head, state, sizeof head);
+  size_t numbers = (size_t)(sim->mj->nq + 3 * sim->mj->nv);
+  if (!params_ok(&head.params) || !vs_all_finite(&head.time, 1) ||
+      !vs_all_finite(&head.wheel[0][0].target_radps, sizeof head.wheel / sizeof(double)) ||
+      !vs_all_finite((const double *)((const char *)state + sizeof head), numbers))
+    return vs_fail(err, VS_FAIL, "the snapshot of the simulator is damaged");
   vs_sim_reset(sim, &head.params);
   sim->frame = head.frame;
   sim->push_rng = head.push_rng;
@@ -42,4 +56,5 @@ void vs_sim_restore(vs_sim *sim, const void *state) {
   memcpy(sim->data->qvel, at + nq, nv);
   memcpy(sim->data->qacc_warmstart, at + nq + nv, nv);
   memcpy(sim->data->qfrc_constraint, at + nq + 2 * nv, nv);
+  return VS_OK;
 }

@@ -292,7 +292,7 @@ static void snapshot_continues_like_the_original(void **state) {
   size_t size = vs_control_state_size(a);
   void *kept = test_malloc(size), *end_a = test_malloc(size), *end_b = test_malloc(size);
   vs_control_save(a, kept);
-  vs_control_restore(b, kept);
+  assert_ok(vs_control_restore(b, kept, err));
   for (int n = 10; n < 20; n++)
     assert_int_equal(frame(a, VS_BLUE, 0.01 * n, 1.0 / 30, NULL), frame(b, VS_BLUE, 0.01 * n, 1.0 / 30, NULL));
   vs_control_save(a, end_a);

@@ -252,10 +252,10 @@ static void a_snapshot_continues_bit_identically_here_and_elsewhere(void **state
   vs_env_save(env, snapshot);
   play_frames(env, 100);
   uint64_t expected = vs_env_hash(env);
-  vs_env_restore(env, snapshot);
+  assert_ok(vs_env_restore(env, snapshot, err));
   play_frames(env, 100);
   assert_int_equal(vs_env_hash(env), expected);
-  vs_env_restore(other, snapshot);
+  assert_ok(vs_env_restore(other, snapshot, err));
   play_frames(other, 100);
   assert_int_equal(vs_env_hash(other), expected);
   free(snapshot);

@@ -192,7 +192,7 @@ static void a_snapshot_continues_bit_identically_with_other_threads(void **state
   memcpy(kept, a, sizeof *a);
   uint64_t expected = run(vec, a, 15, 40); // over the end of an episode
   run(other, b, 0, 3);
-  vs_vecenv_restore(other, snapshot);
+  assert_ok(vs_vecenv_restore(other, snapshot, err));
   memcpy(b, kept, sizeof *b);
   assert_int_equal(run(other, b, 15, 40), expected);
   assert_int_equal(vs_vecenv_hash(other), vs_vecenv_hash(vec));

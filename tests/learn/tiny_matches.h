@@ -84,11 +84,13 @@ static void tiny_save(const void *self, void *state) {
   memcpy((char *)state + bytes, t->episode, bytes);
 }
 
-static void tiny_restore(void *self, const void *state) {
+static vs_status tiny_restore(void *self, const void *state, vs_error *err) {
+  (void)err;
   tiny *t = self;
   size_t bytes = (size_t)t->envs * sizeof(int);
   memcpy(t->step, state, bytes);
   memcpy(t->episode, (const char *)state + bytes, bytes);
+  return VS_OK;
 }
 
 static void tiny_free(void *self) {

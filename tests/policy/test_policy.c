@@ -95,7 +95,7 @@ static void restored_random_player_repeats_its_commands(void **state) {
   assert_true(vs_player_state_size(player) > 0 && vs_player_state_size(player) <= sizeof saved);
   vs_player_save(player, saved);
   assert_ok(vs_player_step(player, &world, &game, 0.1, first, err));
-  vs_player_restore(player, saved);
+  assert_ok(vs_player_restore(player, saved, err));
   assert_ok(vs_player_step(player, &world, &game, 0.1, again, err));
   assert_memory_equal(first, again, sizeof first);
   vs_player_close(player);
@@ -222,7 +222,7 @@ static void restored_players_repeat_their_commands(void **state) {
       vs_wheels a[VS_TEAM_SIZE], b[VS_TEAM_SIZE];
       if (k == 100) {
         vs_player_save(player, saved);
-        vs_player_restore(other, saved);
+        assert_ok(vs_player_restore(other, saved, err));
       }
       assert_ok(vs_player_step(player, &world, &game, 1.0 / 30, a, err));
       if (k < 100) continue;

@@ -111,7 +111,7 @@ static void start_at_five_seconds(vs_player *player) {
   assert_int_equal(vs_player_state_size(player), sizeof s);
   vs_player_save(player, &s);
   s.now_s = 5.0 - 0.033;
-  vs_player_restore(player, &s);
+  assert_ok(vs_player_restore(player, &s, err));
 }
 
 // The player, told of events, sends the recorded commands; sequences after a free kick, which our referee does not

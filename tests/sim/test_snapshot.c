@@ -45,10 +45,10 @@ static void continues(int drive, const vs_sim_params *params) {
   uint64_t expected = play(sim, &rng, 60);
 
   rng = at_save;
-  vs_sim_restore(sim, state); // into the same simulator, later in time
+  assert_ok(vs_sim_restore(sim, state, err)); // into the same simulator, later in time
   assert_true(play(sim, &rng, 60) == expected);
   rng = at_save;
-  vs_sim_restore(fresh, state); // into one that knows nothing of this match
+  assert_ok(vs_sim_restore(fresh, state, err)); // into one that knows nothing of this match
   assert_true(play(fresh, &rng, 60) == expected);
   free(state);
   vs_sim_free(fresh);
