@@ -1,5 +1,5 @@
 # vsss: `make` builds ./vsss, `make test` runs everything, `make help` lists the rest.
-# Sources are found by folder: src/<module>/*.c go into the program, src/<module>/*.cpp are shims built as modules
+# Sources are found by folder: src/<module>/*.c (and folders in a module) go into the program, src/<module>/*.cpp are shims built as modules
 # (build/lib/vsss_NAME.so) that a command loads when it needs them. FLAVOUR=asan|tsan builds beside, not over.
 
 .DEFAULT_GOAL := all
@@ -29,11 +29,11 @@ CFLAGS_ALL := -std=gnu11 $(WARN) $(OPT) -ffp-contract=off -fPIC -pthread -Iinclu
 CXXFLAGS_ALL := -std=gnu++17 $(WARN) $(OPT) -fPIC -pthread -Iinclude -Isrc $(SAN) $(CXXFLAGS)
 LDLIBS_ALL := $(FEATURE_LIBS) -ldl -lm -pthread
 
-LIB_SRC := $(filter-out $(FEATURE_EXCLUDE),$(wildcard src/*/*.c))
+LIB_SRC := $(filter-out $(FEATURE_EXCLUDE),$(wildcard src/*/*.c src/*/*/*.c))
 LIB_SRC := $(filter-out src/cli/main.c,$(LIB_SRC))
 LIB_OBJ := $(LIB_SRC:%.c=$(B)/%.o) $(FEATURE_OBJ)
 MAIN_OBJ := $(B)/src/cli/main.o
-TEST_SRC := $(wildcard tests/*/test_*.c)
+TEST_SRC := $(wildcard tests/*/test_*.c tests/*/*/test_*.c)
 BENCH_BIN := $(patsubst %.c,$(B)/%,$(wildcard tests/bench/bench_*.c))
 TEST_BIN := $(TEST_SRC:%.c=$(B)/%)
 VSSS := $(if $(filter plain,$(FLAVOUR)),vsss,$(B)/vsss)

@@ -46,7 +46,7 @@ FEATURE_EXCLUDE += $(call choose,APRILTAG,src/vision/detect_tags.c)
 FEATURE_LIBS += $(if $(HAVE_APRILTAG),-lapriltag -lapriltag-utils)
 
 # EGL: the renderer opens the library when it draws, only the headers are needed here.
-FEATURE_EXCLUDE += $(call choose,EGL,src/sim/gl_context.c)
+FEATURE_EXCLUDE += $(call choose,EGL,src/render/gl_context.c)
 
 # ONNX Runtime: headers only; the library is opened when a model is (system package, or build/onnxruntime/lib).
 FEATURE_EXCLUDE += $(call choose,ONNXRUNTIME,src/policy/policy_onnx.c)

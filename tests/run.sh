@@ -5,7 +5,7 @@ folder=$1
 only=$2
 passed=0
 failed=0
-for test in "$folder"/tests/*/test_*; do
+for test in "$folder"/tests/*/test_* "$folder"/tests/*/*/test_*; do
   case $test in *.d | *.o | *.so | *.log) continue ;; esac
   [ -x "$test" ] || continue
   name=${test#"$folder"/tests/}

@@ -18,7 +18,6 @@ extern "C" {
 #define VS_OBS_SIZE         (VS_OBS_FRAME * VS_OBS_STACK)
 #define VS_ACTION_SIZE      2
 #define VS_DECISION_HZ      10
-#define VS_CAMERA_HZ        30
 #define VS_CONTRACT_VERSION 1
 
 // Divisors of the observation (paper section VI; field code of the authors).

@@ -5,7 +5,6 @@
 #define VSSS_TRACK_H
 
 #include "vsss/calib.h"
-#include "vsss/config.h"
 #include "vsss/detect.h"
 #include "vsss/field.h"
 #include "vsss/kalman.h"
@@ -64,12 +63,6 @@ void vs_track_restart(vs_tracker *tracker);
 void vs_track_update(vs_tracker *tracker, const vs_calib *calib, const vs_detections *seen);
 // The world predicted to time_us (0: the newest frame's). Objects not seen for VS_TRACK_HOLD_US before it are invalid.
 void vs_track_world(const vs_tracker *tracker, int64_t time_us, vs_world *out);
-
-// The [vision] section of deploy/config/field.ini: writes up to capacity rows for vs_config_load that set detector and
-// tracker, and returns how many (no closing row). family[32] receives the tag family's name, which detector->tag.family
-// points to.
-int vs_vision_schema(vs_detector_def *detector, vs_track_def *tracker, vs_camera_def *camera, char family[32],
-                     vs_config_key *rows, int capacity);
 
 #ifdef __cplusplus
 }

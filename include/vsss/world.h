@@ -18,6 +18,8 @@ extern "C" {
 #define VS_TEAMS     2
 #define VS_TEAM_SIZE 3
 
+#define VS_CAMERA_HZ 30 // frames of the world per second, as the paper's camera gives them; policies see every third
+
 typedef enum vs_team { VS_BLUE = 0, VS_YELLOW = 1 } vs_team;
 // Indices of a team-view world.
 enum { VS_OWN = 0, VS_ADVERSARY = 1 };

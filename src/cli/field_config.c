@@ -5,6 +5,7 @@
 #include "cli.h"
 #include "vsss/config.h"
 #include "vsss/paths.h"
+#include "vsss/vision_config.h"
 
 enum { ROWS = 80, OWN_ROWS = 11 };
 

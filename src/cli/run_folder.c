@@ -26,9 +26,10 @@ vs_status vs_run_folder_lock(const char *folder, vs_error *err) {
   if (file < 0) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
   if (flock(file, LOCK_EX | LOCK_NB) != 0) {
     ssize_t n = errno == EWOULDBLOCK ? read(file, text, sizeof text - 1) : -1;
+    text[n < 0 ? 0 : n] = '\0';
     s = n < 0 ? vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno))
               : vs_fail(err, VS_USAGE, "%s: %.*s trains in it: wait for its end, or choose another --run", folder,
-                        (int)strcspn((text[n] = '\0', text), "\n"), text);
+                        (int)strcspn(text, "\n"), text);
     close(file);
     return s;
   }

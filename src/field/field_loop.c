@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sender.h"
+#include "vsss/sender.h"
 #include "tap.h"
 #include "vsss/clock.h"
 #include "vsss/control.h"

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "vsss/file.h"
 #include "vsss/world.h"
 
 static const char magic[8] = "VSSSCKP1";

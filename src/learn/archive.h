@@ -2,6 +2,7 @@
 #ifndef VSSS_LEARN_ARCHIVE_H
 #define VSSS_LEARN_ARCHIVE_H
 
+#include "vsss/status.h"
 #include "wire.h"
 
 #define VS_ARCHIVE_NAME 16

@@ -8,6 +8,7 @@
 
 #include "tensorboard.h"
 #include "vsss/clock.h"
+#include "vsss/file.h"
 
 struct vs_journal {
   FILE *progress, *eval, *events;

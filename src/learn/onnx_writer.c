@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "vsss/contract.h"
+#include "vsss/file.h"
 #include "vsss/observe.h"
 #include "wire.h"
 

@@ -7,8 +7,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "vsss/status.h"
-
 // Zero-initialised is empty. After a failed allocation `failed` stays set and further writes do nothing: check once.
 typedef struct vs_bytes {
   uint8_t *data; // owned
@@ -29,9 +27,5 @@ void vs_wire_bytes(vs_bytes *out, int field, const void *data, size_t size);
 void vs_wire_text(vs_bytes *out, int field, const char *text);
 // Appends inner as a nested message and frees it.
 void vs_wire_message(vs_bytes *out, int field, vs_bytes *inner);
-
-// Writes path through path.tmp, fsync and rename: a reader, or a crash at any moment, sees the old file or the new one,
-// whole. A full disk is VS_FAIL naming the file; the old file stays.
-vs_status vs_file_replace(const char *path, const void *data, size_t size, vs_error *err);
 
 #endif

@@ -14,7 +14,6 @@
 // Chosen by the agreement table of bench_sim: see tests/bench/bench_sim.c.
 #define CONTACT_SUBSTEPS 5
 #define PLANAR_SUBSTEPS  5
-#define FRAME_HZ         30 // VS_CAMERA_HZ, which belongs to the contract
 
 const char *vs_drive_name(vs_drive drive) { return drive == VS_DRIVE_PLANAR ? "planar" : "contact"; }
 
@@ -239,7 +238,7 @@ vs_status vs_model_load(const vs_model_def *def, vs_model **out, vs_error *err) 
   vs_model *model = calloc(1, sizeof *model);
   if (!model) return vs_fail(err, VS_FAIL, "out of memory");
   model->drive = def->drive;
-  model->frame_hz = def->frame_hz ? def->frame_hz : FRAME_HZ;
+  model->frame_hz = def->frame_hz ? def->frame_hz : VS_CAMERA_HZ;
   model->substeps = def->substeps_per_frame;
   if (!model->substeps) model->substeps = def->drive == VS_DRIVE_PLANAR ? PLANAR_SUBSTEPS : CONTACT_SUBSTEPS;
   vs_status status = load_file(path, &model->mj, err);

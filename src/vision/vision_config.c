@@ -1,8 +1,8 @@
 // The [vision] section of the field's configuration.
+#include "vsss/vision_config.h"
+
 #include <stdio.h>
 #include <string.h>
-
-#include "vsss/track.h"
 
 typedef struct rows {
   vs_config_key *out;

@@ -5,7 +5,7 @@
 #include "assert_near.h"
 #include "vsss/paths.h"
 #include "vsss/tag.h"
-#include "vsss/track.h"
+#include "vsss/vision_config.h"
 
 enum { ROOM = 80 };
 static vs_detector_def detector;

@@ -1,0 +1,105 @@
+#include "vsss/sender.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "vsss/clock.h"
+
+#define LAST_FRAMES_US 5000 // between the stops on the way out
+#define DRAIN_MS       200
+
+struct vs_sender {
+  pthread_t thread;
+  pthread_mutex_t lock; // of all below
+  bool stop;
+  vs_radio_link link;
+  vs_serial *serial; // NULL: dry
+};
+
+// With the lock held.
+static void write_frame(vs_sender *s, const uint8_t *bytes, size_t size, int64_t now_us) {
+  if (size && s->serial) vs_serial_write(s->serial, bytes, size, now_us);
+}
+
+static void read_telemetry(vs_sender *s, int64_t now_us) {
+  uint8_t bytes[256];
+  size_t n;
+  while (s->serial && (n = vs_serial_read(s->serial, bytes, sizeof bytes, now_us)) > 0)
+    vs_radio_link_receive(&s->link, bytes, n, now_us);
+}
+
+static void *repeat(void *sender) {
+  vs_sender *s = sender;
+  for (;;) {
+    pthread_mutex_lock(&s->lock);
+    bool stop = s->stop;
+    int64_t now_us = vs_clock_monotonic_us();
+    uint8_t bytes[VS_RADIO_FRAME_MAX];
+    write_frame(s, bytes, vs_radio_link_due(&s->link, now_us, bytes), now_us);
+    read_telemetry(s, now_us);
+    int64_t next_us = s->link.next_us;
+    pthread_mutex_unlock(&s->lock);
+    if (stop) return NULL;
+    vs_clock_sleep_until_us(next_us);
+  }
+}
+
+vs_status vs_sender_new(const char *device, int baud, const uint8_t id[VS_TEAM_SIZE], vs_sender **out, vs_error *err) {
+  *out = NULL;
+  vs_sender *s = calloc(1, sizeof *s);
+  if (!s) return vs_fail(err, VS_FAIL, "out of memory");
+  vs_status status = vs_radio_link_init(&s->link, id, err);
+  if (status == VS_OK && device) status = vs_serial_open(device, baud, &s->serial, err);
+  pthread_mutex_init(&s->lock, NULL);
+  if (status == VS_OK && pthread_create(&s->thread, NULL, repeat, s))
+    status = vs_fail(err, VS_FAIL, "no thread for the radio");
+  if (status != VS_OK) {
+    vs_serial_close(s->serial);
+    pthread_mutex_destroy(&s->lock);
+    free(s);
+    return status;
+  }
+  *out = s;
+  return VS_OK;
+}
+
+void vs_sender_free(vs_sender *s) {
+  if (!s) return;
+  pthread_mutex_lock(&s->lock);
+  s->stop = true;
+  pthread_mutex_unlock(&s->lock);
+  pthread_join(s->thread, NULL);
+  for (int i = 0; i < VS_RADIO_STOP_FRAMES && s->serial; i++) {
+    uint8_t bytes[VS_RADIO_FRAME_MAX];
+    int64_t now_us = vs_clock_monotonic_us();
+    write_frame(s, bytes, vs_radio_link_stop(&s->link, now_us, bytes), now_us);
+    vs_clock_sleep_until_us(now_us + LAST_FRAMES_US);
+  }
+  if (s->serial) vs_serial_drain(s->serial, DRAIN_MS);
+  vs_serial_close(s->serial);
+  pthread_mutex_destroy(&s->lock);
+  free(s);
+}
+
+void vs_sender_command(vs_sender *s, const vs_wheels wheels[VS_TEAM_SIZE], bool stop, int64_t capture_us, bool now) {
+  pthread_mutex_lock(&s->lock);
+  vs_radio_link_command(&s->link, wheels, stop, capture_us);
+  if (now) {
+    int64_t now_us = vs_clock_monotonic_us();
+    uint8_t bytes[VS_RADIO_FRAME_MAX];
+    s->link.next_us = now_us; // out of turn; the repeats count from here
+    write_frame(s, bytes, vs_radio_link_due(&s->link, now_us, bytes), now_us);
+  }
+  pthread_mutex_unlock(&s->lock);
+}
+
+void vs_sender_state(vs_sender *s, vs_radio_link *link, vs_serial_stats *serial) {
+  pthread_mutex_lock(&s->lock);
+  *link = s->link;
+  if (s->serial)
+    *serial = vs_serial_get_stats(s->serial);
+  else
+    memset(serial, 0, sizeof *serial);
+  pthread_mutex_unlock(&s->lock);
+}

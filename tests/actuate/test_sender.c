@@ -1,0 +1,138 @@
+// src/actuate/sender.c
+#include <string.h>
+
+#include "assert_near.h"
+#include "vsss/sender.h"
+#include "vsss/clock.h"
+
+static const uint8_t id[VS_TEAM_SIZE] = {4, 7, 9};
+static const vs_wheels forward[VS_TEAM_SIZE] = {{10, 10}, {-5, 5}, {0, 1}};
+
+typedef struct heard {
+  int frames, stops, last_is_stop;
+  int trailing_stops; // at the end
+  vs_radio_command last;
+} heard;
+
+// Reads the other end for some time.
+static void listen(vs_pty *pty, vs_radio_decoder *decoder, int64_t for_us, heard *h) {
+  int64_t until_us = vs_clock_monotonic_us() + for_us;
+  do {
+    uint8_t bytes[512];
+    size_t n = vs_pty_read(pty, bytes, sizeof bytes);
+    for (size_t i = 0; i < n; i++) {
+      vs_radio_frame frame;
+      if (!vs_radio_decode(decoder, bytes[i], &frame) || frame.type != VS_RADIO_COMMAND) continue;
+      h->last = frame.as.command;
+      h->frames++;
+      h->last_is_stop = (frame.as.command.flags & VS_RADIO_FLAG_STOP) != 0;
+      h->stops += h->last_is_stop;
+      h->trailing_stops = h->last_is_stop ? h->trailing_stops + 1 : 0;
+    }
+    vs_clock_sleep_until_us(vs_clock_monotonic_us() + 1000);
+  } while (vs_clock_monotonic_us() < until_us);
+}
+
+static void before_any_command_the_robots_are_told_to_stop(void **state) {
+  (void)state;
+  vs_pty *pty;
+  vs_sender *sender;
+  vs_radio_decoder decoder = {0};
+  heard h = {0};
+  assert_ok(vs_pty_new(&pty, err));
+  assert_ok(vs_sender_new(vs_pty_path(pty), VS_SERIAL_BAUD, id, &sender, err));
+  listen(pty, &decoder, 200000, &h);
+  assert_true(h.frames >= 2);
+  assert_int_equal(h.stops, h.frames);
+  vs_sender_free(sender);
+  vs_pty_free(pty);
+}
+
+static void a_command_is_repeated_until_it_is_too_old_then_stops(void **state) {
+  (void)state;
+  vs_pty *pty;
+  vs_sender *sender;
+  vs_radio_decoder decoder = {0};
+  heard early = {0}, late = {0};
+  assert_ok(vs_pty_new(&pty, err));
+  assert_ok(vs_sender_new(vs_pty_path(pty), VS_SERIAL_BAUD, id, &sender, err));
+  listen(pty, &decoder, 20000, &early);
+  memset(&early, 0, sizeof early);
+  vs_sender_command(sender, forward, false, vs_clock_monotonic_us(), true);
+  listen(pty, &decoder, 5000, &early);
+  assert_true(early.frames >= 1);
+  assert_int_equal(early.last.n, 3);
+  assert_int_equal(early.last.robot[1].id, 7);
+  assert_int_equal(early.last.robot[1].left, -500); // 0.01 rad/s
+  assert_int_equal(early.last.robot[1].right, 500);
+  listen(pty, &decoder, VS_RADIO_STALE_US + 100000, &late);
+  assert_true(late.frames >= 3); // 50 Hz for 250 ms, on however busy a machine
+  assert_true(late.last_is_stop);
+  vs_sender_free(sender);
+  vs_pty_free(pty);
+}
+
+static void an_old_frame_never_drives(void **state) {
+  (void)state;
+  vs_pty *pty;
+  vs_sender *sender;
+  vs_radio_decoder decoder = {0};
+  heard h = {0};
+  assert_ok(vs_pty_new(&pty, err));
+  assert_ok(vs_sender_new(vs_pty_path(pty), VS_SERIAL_BAUD, id, &sender, err));
+  vs_sender_command(sender, forward, false, vs_clock_monotonic_us() - VS_RADIO_STALE_US - 1, true);
+  listen(pty, &decoder, 100000, &h);
+  assert_true(h.frames >= 1);
+  assert_int_equal(h.stops, h.frames);
+  vs_sender_free(sender);
+  vs_pty_free(pty);
+}
+
+static void the_last_frames_are_stops(void **state) {
+  (void)state;
+  vs_pty *pty;
+  vs_sender *sender;
+  vs_radio_decoder decoder = {0};
+  heard h = {0};
+  assert_ok(vs_pty_new(&pty, err));
+  assert_ok(vs_sender_new(vs_pty_path(pty), VS_SERIAL_BAUD, id, &sender, err));
+  vs_sender_command(sender, forward, false, vs_clock_monotonic_us(), true);
+  vs_sender_free(sender);
+  listen(pty, &decoder, 50000, &h);
+  assert_true(h.trailing_stops >= VS_RADIO_STOP_FRAMES);
+  assert_int_equal(h.last.robot[0].left, 0);
+  vs_pty_free(pty);
+}
+
+static void a_dry_run_makes_frames_for_nobody(void **state) {
+  (void)state;
+  vs_sender *sender;
+  assert_ok(vs_sender_new(NULL, 0, id, &sender, err));
+  vs_sender_command(sender, forward, false, vs_clock_monotonic_us(), true);
+  vs_radio_link link;
+  vs_serial_stats serial;
+  vs_sender_state(sender, &link, &serial);
+  assert_true(link.seq >= 1);
+  assert_int_equal(serial.sent, 0);
+  vs_sender_free(sender);
+}
+
+static void a_device_that_is_not_there_is_named(void **state) {
+  (void)state;
+  vs_sender *sender;
+  vs_error err = {0};
+  assert_int_equal(vs_sender_new("/dev/no-such-radio", VS_SERIAL_BAUD, id, &sender, &err), VS_FAIL);
+  assert_non_null(strstr(err.text, "/dev/no-such-radio"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(before_any_command_the_robots_are_told_to_stop),
+      cmocka_unit_test(a_command_is_repeated_until_it_is_too_old_then_stops),
+      cmocka_unit_test(an_old_frame_never_drives),
+      cmocka_unit_test(the_last_frames_are_stops),
+      cmocka_unit_test(a_dry_run_makes_frames_for_nobody),
+      cmocka_unit_test(a_device_that_is_not_there_is_named),
+  };
+  return cmocka_run_group_tests_name("actuate/sender", tests, NULL, NULL);
+}

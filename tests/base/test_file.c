@@ -1,0 +1,75 @@
+// src/base/file.c
+#include "vsss/file.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include "assert_near.h"
+#include "test_folder.h"
+
+static char *text_of(const char *path, char *out, size_t size) {
+  FILE *file = fopen(path, "r");
+  assert_non_null(file);
+  out[fread(out, 1, size - 1, file)] = '\0';
+  fclose(file);
+  return out;
+}
+
+static void a_file_is_replaced_whole_and_nothing_is_left_beside_it(void **state) {
+  (void)state;
+  char path[128], beside[160], text[64] = "";
+  vs_error err = {0};
+  struct stat about;
+  snprintf(path, sizeof path, "%s/a file", folder);
+  snprintf(beside, sizeof beside, "%s.tmp", path);
+  assert_int_equal(vs_file_replace(path, "a long first text", 17, &err), VS_OK);
+  assert_int_equal(vs_file_replace(path, "second", 6, &err), VS_OK);
+  assert_string_equal(text_of(path, text, sizeof text), "second");
+  assert_int_not_equal(stat(beside, &about), 0);
+}
+
+static void a_write_that_fails_keeps_the_old_file_and_names_it(void **state) {
+  (void)state;
+  static char large[20000];
+  char path[128], beside[160], text[64] = "";
+  vs_error err = {0};
+  struct stat about;
+  struct rlimit old, small;
+  snprintf(path, sizeof path, "%s/kept", folder);
+  snprintf(beside, sizeof beside, "%s.tmp", path);
+  assert_int_equal(vs_file_replace(path, "old", 3, &err), VS_OK);
+  // A file size limit stands for the full disk: write(2) fails in the same way once the signal is ignored.
+  void (*was)(int) = signal(SIGXFSZ, SIG_IGN);
+  assert_int_equal(getrlimit(RLIMIT_FSIZE, &old), 0);
+  small = old;
+  small.rlim_cur = 8192;
+  setrlimit(RLIMIT_FSIZE, &small);
+  vs_status s = vs_file_replace(path, large, sizeof large, &err);
+  setrlimit(RLIMIT_FSIZE, &old);
+  signal(SIGXFSZ, was);
+  assert_int_equal(s, VS_FAIL);
+  assert_non_null(strstr(err.text, path));
+  assert_string_equal(text_of(path, text, sizeof text), "old");
+  assert_int_not_equal(stat(beside, &about), 0);
+}
+
+static void a_folder_that_is_not_there_is_an_error(void **state) {
+  (void)state;
+  char path[128];
+  vs_error err = {0};
+  snprintf(path, sizeof path, "%s/none/file", folder);
+  assert_int_equal(vs_file_replace(path, "x", 1, &err), VS_FAIL);
+  assert_non_null(strstr(err.text, path));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_file_is_replaced_whole_and_nothing_is_left_beside_it),
+      cmocka_unit_test(a_write_that_fails_keeps_the_old_file_and_names_it),
+      cmocka_unit_test(a_folder_that_is_not_there_is_an_error),
+  };
+  return cmocka_run_group_tests_name("base/file", tests, make_folder, remove_folder);
+}
