@@ -1,9 +1,9 @@
 // Whether a snapshot of a built-in player holds what its code can go on from: indices and enumerations in their ranges.
 // Other numbers only lead to other wheel speeds, which policy.c checks.
 #include "policy_internal.h"
-#include "strategy_emc.h"
-#include "strategy_emc22.h"
-#include "strategy_inf.h"
+#include "policy/strategies/emc.h"
+#include "policy/strategies/emc22.h"
+#include "policy/strategies/inf.h"
 #include "vsss/check.h"
 
 // As integers: an enumeration of any value may be read so.
