@@ -12,10 +12,10 @@
 extern "C" {
 #endif
 
-typedef enum vs_config_type { VS_CONFIG_INT, VS_CONFIG_REAL, VS_CONFIG_BOOL, VS_CONFIG_TEXT } vs_config_type;
+typedef enum vs_config_type { VS_CONFIG_INT, VS_CONFIG_REAL, VS_CONFIG_BOOL, VS_CONFIG_TEXT, VS_CONFIG_SEED } vs_config_type;
 
 // One key of a schema. Keys of an INI section are written "section.key". The value is stored at target, which is an
-// int, double, bool or char[text_size]. Numbers outside [min, max] are refused (min == max == 0: no limits).
+// int, double, bool, char[text_size] or uint64_t (VS_CONFIG_SEED). Numbers outside [min, max] are refused (min == max == 0: no limits).
 typedef struct vs_config_key {
   const char *name;
   vs_config_type type;
@@ -24,6 +24,12 @@ typedef struct vs_config_key {
   double min, max;
   const char *help;
 } vs_config_key;
+
+// A value of a file ends where a comment begins, with # or ;. One that holds such a character, or spaces at its ends, is
+// written in double quotes; in them \" \\ \n and \r stand for these characters.
+
+// value as it must be written in a file; needs up to 2 * strlen(value) + 3 bytes.
+void vs_config_quote(const char *value, char *out, size_t size);
 
 // A schema ends with a row whose name is NULL. On an error no further key is read; keys read so far are set.
 vs_status vs_config_load(const char *path, const vs_config_key *schema, vs_error *err);

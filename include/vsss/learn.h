@@ -25,7 +25,7 @@ typedef struct vs_train_def {
   double start_open, start_penalty, start_free_ball; // shares of episodes that begin so; the rest kick off
   int envs, steps;                                   // matches side by side; decisions of each per update
   int threads;
-  int seed;
+  uint64_t seed;
   // Opponents (src/learn/league.h).
   char opponent[256]; // mix, such as "self=0.6,pool=0.4"
   double replace_score;
@@ -61,8 +61,10 @@ vs_status vs_train_def_preset(const char *name, vs_train_def *out, vs_error *err
 // One row per setting, with its allowed range, targets inside def; ended by a NULL name.
 #define VS_TRAIN_KEYS_MAX 48
 void vs_train_schema(vs_train_def *def, vs_config_key keys[VS_TRAIN_KEYS_MAX]);
-// All settings as lines "key = value", as an INI file; returns the length it would need.
-size_t vs_train_def_text(const vs_train_def *def, char *out, size_t size);
+// All settings as lines "key = value", as an INI file, with a comment over each if asked for; returns the length it would
+// need. VS_TRAIN_TEXT_MAX is enough for any.
+#define VS_TRAIN_TEXT_MAX 16384
+size_t vs_train_def_text(const vs_train_def *def, bool comments, char *out, size_t size);
 // What ranges cannot say: text fields, minibatch against batch.
 vs_status vs_train_def_check(const vs_train_def *def, vs_error *err);
 

@@ -2,10 +2,11 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "vsss/number.h"
 
 static int edit_distance(const char *a, const char *b) {
   size_t n = strlen(a), m = strlen(b);
@@ -47,17 +48,17 @@ static char *trim(char *text) {
 static bool limited(const vs_config_key *k) { return k->min != 0.0 || k->max != 0.0; }
 
 static vs_status store_number(const char *where, const vs_config_key *k, const char *value, vs_error *err) {
-  char *end;
-  errno = 0;
-  double number = strtod(value, &end);
-  bool whole = k->type == VS_CONFIG_INT;
-  if (end == value || *end || errno || !isfinite(number) || (whole && (number != floor(number) || fabs(number) > 2e9)))
+  double number = 0.0;
+  int whole = 0;
+  bool is_whole = k->type == VS_CONFIG_INT;
+  if (!(is_whole ? vs_parse_whole(value, &whole) : vs_parse_real(value, &number)))
     return vs_fail(err, VS_USAGE, "%s: %s = %s: expected a %s", where, k->name, value,
-                   whole ? "whole number" : "number");
+                   is_whole ? "whole number" : "number");
+  if (is_whole) number = whole;
   if (limited(k) && (number < k->min || number > k->max))
-    return vs_fail(err, VS_USAGE, "%s: %s = %s: allowed are %g to %g", where, k->name, value, k->min, k->max);
-  if (whole)
-    *(int *)k->target = (int)number;
+    return vs_fail(err, VS_USAGE, "%s: %s = %s: allowed are %.10g to %.10g", where, k->name, value, k->min, k->max);
+  if (is_whole)
+    *(int *)k->target = whole;
   else
     *(double *)k->target = number;
   return VS_OK;
@@ -74,6 +75,9 @@ static vs_status store(const char *where, const char *name, const char *value, c
   switch (k->type) {
   case VS_CONFIG_INT:
   case VS_CONFIG_REAL: return store_number(where, k, value, err);
+  case VS_CONFIG_SEED:
+    if (vs_parse_seed(value, k->target)) return VS_OK;
+    return vs_fail(err, VS_USAGE, "%s: %s = %s: expected a whole number from 0 to 2^64-1", where, name, value);
   case VS_CONFIG_BOOL:
     if (!strcmp(value, "true") || !strcmp(value, "yes") || !strcmp(value, "on") || !strcmp(value, "1"))
       *(bool *)k->target = true;
@@ -91,27 +95,74 @@ static vs_status store(const char *where, const char *name, const char *value, c
   return vs_fail(err, VS_FAIL, "%s: %s: unknown type in the schema", where, name);
 }
 
+// Reads a quoted value in place, from its first quote on; false where the closing one is missing or more than a comment
+// follows it.
+static bool unquote(char *text) {
+  char *to = text, *from = text + 1;
+  while (*from && *from != '"') {
+    if (*from == '\\' && from[1]) {
+      from++;
+      *to++ = *from == 'n' ? '\n' : *from == 'r' ? '\r' : *from;
+    } else {
+      *to++ = *from;
+    }
+    from++;
+  }
+  if (*from != '"') return false;
+  char *rest = trim(from + 1);
+  bool ends = *rest == '\0' || *rest == '#' || *rest == ';';
+  *to = '\0';
+  return ends;
+}
+
+void vs_config_quote(const char *value, char *out, size_t size) {
+  size_t n = strlen(value), used = 0;
+  bool plain = strcspn(value, "#;\"\\\n\r") == n &&
+               (n == 0 || (!isspace((unsigned char)value[0]) && !isspace((unsigned char)value[n - 1])));
+  if (size == 0) return;
+  if (!plain && used + 1 < size) out[used++] = '"';
+  for (; *value && used + 1 < size; value++) {
+    bool escaped = !plain && strchr("\"\\\n\r", *value);
+    if (escaped) out[used++] = '\\';
+    if (used + 1 < size) out[used++] = !escaped ? *value : *value == '\n' ? 'n' : *value == '\r' ? 'r' : *value;
+  }
+  if (!plain && used + 1 < size) out[used++] = '"';
+  out[used] = '\0';
+}
+
 static vs_status parse_line(const char *file, int number, char *line, char *section, size_t section_size,
                             const vs_config_key *schema, vs_error *err) {
   char where[300];
   snprintf(where, sizeof where, "%.256s:%d", file, number);
-  char *comment = strpbrk(line, "#;");
-  if (comment) *comment = '\0';
+  char *equals = strchr(line, '=');
+  bool assigns = equals && strcspn(line, "#;[") > (size_t)(equals - line);
+  char *value = NULL;
+  if (assigns) {
+    *equals = '\0';
+    value = equals + 1;
+    while (isspace((unsigned char)*value)) value++;
+  }
+  if (value && *value == '"') {
+    if (!unquote(value))
+      return vs_fail(err, VS_USAGE, "%s: %s: expected a closing \" and nothing after it", where, trim(line));
+  } else {
+    char *comment = strpbrk(value ? value : line, "#;");
+    if (comment) *comment = '\0';
+    if (value) value = trim(value);
+  }
   char *text = trim(line);
-  if (!*text) return VS_OK;
-  if (*text == '[') {
+  if (!assigns && !*text) return VS_OK;
+  if (!assigns && *text == '[') {
     char *close = strchr(text, ']');
     if (!close || close[1]) return vs_fail(err, VS_USAGE, "%s: '%s': expected [section]", where, text);
     *close = '\0';
     snprintf(section, section_size, "%s", trim(text + 1));
     return VS_OK;
   }
-  char *equals = strchr(text, '=');
-  if (!equals) return vs_fail(err, VS_USAGE, "%s: '%s': expected key = value", where, text);
-  *equals = '\0';
+  if (!assigns) return vs_fail(err, VS_USAGE, "%s: '%s': expected key = value", where, text);
   char name[200];
-  snprintf(name, sizeof name, "%.90s%s%.90s", section, *section ? "." : "", trim(text));
-  return store(where, name, trim(equals + 1), schema, err);
+  snprintf(name, sizeof name, "%.90s%s%.90s", section, *section ? "." : "", text);
+  return store(where, name, value, schema, err);
 }
 
 vs_status vs_config_parse(const char *name_for_errors, const char *text, const vs_config_key *schema, vs_error *err) {
@@ -162,7 +213,9 @@ vs_status vs_config_load(const char *path, const vs_config_key *schema, vs_error
 }
 
 vs_status vs_config_set(const char *assignment, const vs_config_key *schema, vs_error *err) {
-  char copy[512];
+  char copy[1024];
+  if (strlen(assignment) >= sizeof copy)
+    return vs_fail(err, VS_USAGE, "'%.60s...': longer than %zu characters", assignment, sizeof copy - 1);
   snprintf(copy, sizeof copy, "%s", assignment);
   char *equals = strchr(copy, '=');
   if (!equals) return vs_fail(err, VS_USAGE, "'%s': expected key=value", assignment);

@@ -1,14 +1,14 @@
-#include <errno.h>
-#include <math.h>
+#include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli.h"
+#include "vsss/number.h"
 
 static void print_default(const vs_flag *f) {
   if (f->type == VS_FLAG_INT) printf(" [%d]", *(const int *)f->target);
   if (f->type == VS_FLAG_REAL) printf(" [%g]", *(const double *)f->target);
+  if (f->type == VS_FLAG_SEED) printf(" [%" PRIu64 "]", *(const uint64_t *)f->target);
   if (f->type == VS_FLAG_TEXT && *(const char *const *)f->target) printf(" [%s]", *(const char *const *)f->target);
 }
 
@@ -32,17 +32,16 @@ static const vs_flag *find(const vs_flag *flags, const char *name, size_t length
 }
 
 static vs_status store_number(const vs_flag *f, const char *value, vs_error *err) {
-  char *end;
-  errno = 0;
-  double number = strtod(value, &end);
-  bool whole = f->type == VS_FLAG_INT;
-  if (end == value || *end || errno || !isfinite(number) ||
-      (whole && (number != floor(number) || fabs(number) > 2147483647.0)))
-    return vs_fail(err, VS_USAGE, "--%s %s: expected a %s", f->name, value, whole ? "whole number" : "number");
+  double number = 0.0;
+  int whole = 0;
+  bool is_whole = f->type == VS_FLAG_INT;
+  if (!(is_whole ? vs_parse_whole(value, &whole) : vs_parse_real(value, &number)))
+    return vs_fail(err, VS_USAGE, "--%s %s: expected a %s", f->name, value, is_whole ? "whole number" : "number");
+  if (is_whole) number = whole;
   if ((f->min != 0.0 || f->max != 0.0) && (number < f->min || number > f->max))
-    return vs_fail(err, VS_USAGE, "--%s %s: allowed are %g to %g", f->name, value, f->min, f->max);
-  if (whole)
-    *(int *)f->target = (int)number;
+    return vs_fail(err, VS_USAGE, "--%s %s: allowed are %.10g to %.10g", f->name, value, f->min, f->max);
+  if (is_whole)
+    *(int *)f->target = whole;
   else
     *(double *)f->target = number;
   return VS_OK;
@@ -53,6 +52,9 @@ static vs_status store(const vs_flag *f, const char *value, vs_error *err) {
   case VS_FLAG_INT:
   case VS_FLAG_REAL: return store_number(f, value, err);
   case VS_FLAG_TEXT: *(const char **)f->target = value; return VS_OK;
+  case VS_FLAG_SEED:
+    if (vs_parse_seed(value, f->target)) return VS_OK;
+    return vs_fail(err, VS_USAGE, "--%s %s: expected a whole number from 0 to 2^64-1", f->name, value);
   case VS_FLAG_LIST: {
     vs_flag_list *list = f->target;
     if (list->count == VS_FLAG_LIST_MAX)

@@ -7,9 +7,17 @@
 #include "vsss/status.h"
 #include "vsss/world.h"
 
-typedef enum vs_flag_type { VS_FLAG_SWITCH, VS_FLAG_INT, VS_FLAG_REAL, VS_FLAG_TEXT, VS_FLAG_LIST } vs_flag_type;
+typedef enum vs_flag_type {
+  VS_FLAG_SWITCH,
+  VS_FLAG_INT,
+  VS_FLAG_REAL,
+  VS_FLAG_TEXT,
+  VS_FLAG_LIST,
+  VS_FLAG_SEED
+} vs_flag_type;
 
-// One flag of a command. target: bool, int, double, const char * (pointing into argv), or vs_flag_list (repeatable).
+// One flag of a command. target: bool, int, double, const char * (pointing into argv), vs_flag_list
+// (repeatable), uint64_t (seed).
 // Numbers outside [min, max] are refused with the range (min == max == 0: no limits). The present value of target is
 // shown as the default.
 typedef struct vs_flag {

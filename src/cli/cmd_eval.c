@@ -91,7 +91,7 @@ static vs_status play_pairing(eval_command *c, const vs_env_def *env, vs_error *
   vs_series_def def = {.env = *env,
                        .matches = c->matches,
                        .threads = c->match.threads,
-                       .seed = (uint64_t)c->match.seed,
+                       .seed = c->match.seed,
                        .progress = match_done,
                        .go_on = go_on,
                        .context = c};

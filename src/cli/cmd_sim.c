@@ -117,7 +117,7 @@ static void keep_result(const vs_env *env, vs_match_result *r) {
 // One match, frame by frame, under the eyes of the watchers. The result holds what was played, even after Ctrl-C.
 static vs_status play_watched(sim_command *c, vs_env *env, int match, vs_error *err) {
   vs_match_result *r = &c->results[match];
-  r->seed = vs_seed_mix((uint64_t)c->match.seed, (uint64_t)match);
+  r->seed = vs_seed_mix(c->match.seed, (uint64_t)match);
   vs_status s = vs_env_reset(env, r->seed, err);
   vs_event event = {.kind = VS_EVENT_KICK_OFF, .team = VS_BLUE};
   if (s == VS_OK) s = tell_watchers(c, env, match, &event, err);
@@ -172,7 +172,7 @@ static vs_status play_over_threads(sim_command *c, vs_error *err) {
   vs_series_def def = {.env = c->env,
                        .matches = c->matches,
                        .threads = c->match.threads,
-                       .seed = (uint64_t)c->match.seed,
+                       .seed = c->match.seed,
                        .progress = match_done,
                        .go_on = go_on,
                        .context = c};

@@ -16,11 +16,12 @@
 #include "vsss/clock.h"
 #include "vsss/journal.h"
 #include "vsss/learn.h"
+#include "vsss/number.h"
 
 typedef struct options {
   const char *preset, *config, *run, *resume, *export, *slim, *untrained, *opponent, *reward, *reward_end, *realism,
-      *learner, *imitate, *eval_against;
-  int seed, threads, imitate_updates, eval_matches;
+      *learner, *imitate, *eval_against, *seed;
+  int threads, imitate_updates, eval_matches;
   double minutes, transitions_m, checkpoint_min, eval_min;
   bool league;
   vs_flag_list set;
@@ -80,7 +81,8 @@ static vs_status settings(const options *o, vs_train_def *def, vs_error *err) {
     snprintf(line, sizeof line, "%s=%s", texts[i].key, texts[i].value ? texts[i].value : "");
     if (texts[i].value) s = vs_config_set(line, keys, err);
   }
-  if (o->seed >= 0) def->seed = o->seed;
+  if (s == VS_OK && o->seed && !vs_parse_seed(o->seed, &def->seed))
+    s = vs_fail(err, VS_USAGE, "--seed %s: expected a whole number from 0 to 2^64-1", o->seed);
   if (o->threads > 0) def->threads = o->threads;
   if (o->transitions_m > 0.0) def->transitions_m = o->transitions_m;
   return s == VS_OK ? vs_train_def_check(def, err) : s;
@@ -283,9 +285,9 @@ static vs_status prepare(session *s, const vs_train_def *def, vs_error *err) {
   }
   if (status == VS_OK && s->first) status = vs_run_folder_note(s->folder, s->command, s->commit, err);
   if (status != VS_OK || !s->first) return status;
-  char text[4096];
+  char text[VS_TRAIN_TEXT_MAX];
   snprintf(path, sizeof path, "%s/settings.ini", s->folder);
-  vs_train_def_text(vs_train_settings(s->train), text, sizeof text);
+  vs_train_def_text(vs_train_settings(s->train), true, text, sizeof text);
   FILE *f = fopen(path, "w");
   if (!f || fputs(text, f) == EOF || fclose(f) != 0) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
   return vs_journal_open(s->folder, vs_train_updates(s->train), &s->journal, err);
@@ -327,7 +329,6 @@ static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
 int cmd_train(int argc, char **argv) {
   options o = {.preset = "default",
                .run = "runs/vsss",
-               .seed = -1,
                .checkpoint_min = 5.0,
                .imitate_updates = 40,
                .eval_against = "random:,inf:,emc:",
@@ -337,7 +338,7 @@ int cmd_train(int argc, char **argv) {
       {"config", VS_FLAG_TEXT, &o.config, "FILE", "settings as an INI file", 0, 0},
       {"set", VS_FLAG_LIST, &o.set, "KEY=VALUE", "one setting (see settings.ini in the run's folder); repeatable", 0,
        0},
-      {"seed", VS_FLAG_INT, &o.seed, "N", "everything random follows from it; -1: as set", -1, 2147483647},
+      {"seed", VS_FLAG_TEXT, &o.seed, "N", "everything random follows from it", 0, 0},
       {"threads", VS_FLAG_INT, &o.threads, "N", "0: as set", 0, 256},
       {"opponent", VS_FLAG_TEXT, &o.opponent, "MIX", "such as frozen, emc: or self=0.6,pool=0.4", 0, 0},
       {"league", VS_FLAG_SWITCH, &o.league, NULL, "against itself and a pool of earlier selves", 0, 0},
@@ -365,8 +366,11 @@ int cmd_train(int argc, char **argv) {
   vs_status s = vs_args_parse(argc, argv, "train [flags]", "Learns by self-play.", flags, NULL, &help, &err);
   if (s != VS_OK) return vs_cli_error("train", &err);
   if (help) return 0;
-  if (o.untrained)
-    s = vs_learn_write_untrained(o.untrained, o.seed < 0 ? 1 : (uint64_t)o.seed, &err);
+  uint64_t seed = 1;
+  if (o.untrained && o.seed && !vs_parse_seed(o.seed, &seed))
+    s = vs_fail(&err, VS_USAGE, "--seed %s: expected a whole number from 0 to 2^64-1", o.seed);
+  else if (o.untrained)
+    s = vs_learn_write_untrained(o.untrained, seed, &err);
   else
     s = train(&o, argc, argv, &err);
   return s == VS_OK ? 0 : vs_cli_error("train", &err);

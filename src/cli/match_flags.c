@@ -1,5 +1,6 @@
 #include "match_flags.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -43,7 +44,7 @@ void vs_match_flags_about(const char *about, char *out, size_t size) {
 }
 
 void vs_match_flags_describe(const vs_match_flags *flags, char *out, size_t size) {
-  snprintf(out, size, "%s drive, %s rules, %s placement, %g s, seed %d%s%s", flags->drive, flags->rules,
+  snprintf(out, size, "%s drive, %s rules, %s placement, %g s, seed %" PRIu64 "%s%s", flags->drive, flags->rules,
            flags->placement, flags->seconds, flags->seed, flags->realism ? ", realism " : "",
            flags->realism ? flags->realism : "");
 }

@@ -8,7 +8,8 @@
 typedef struct vs_match_flags {
   const char *drive, *rules, *placement, *realism;
   double seconds;
-  int seed, threads;
+  uint64_t seed;
+  int threads;
 } vs_match_flags;
 
 vs_match_flags
@@ -17,7 +18,7 @@ vs_match_flags_default(void); // contact drive, paper rules and their length, se
 // Rows for a command's flag table; m is a vs_match_flags.
 #define VS_MATCH_FLAG_ROWS(m)                                                                                          \
   {"seconds", VS_FLAG_REAL, &(m).seconds, "S", "length of a match, simulated; 0: 120, or the league's 600", 0, 7200},  \
-      {"seed", VS_FLAG_INT, &(m).seed, "N", "same seed, same matches, for any number of threads", 0, 2147483647},      \
+      {"seed", VS_FLAG_SEED, &(m).seed, "N", "same seed, same matches, for any number of threads", 0, 0},              \
       {"threads", VS_FLAG_INT, &(m).threads, "N", "matches played at a time", 1, 1024},                                \
       {"drive", VS_FLAG_TEXT, &(m).drive, "NAME", "contact (the reference) or planar (the fast twin)", 0, 0},          \
       {"rules", VS_FLAG_TEXT, &(m).rules, "NAME", "paper or league", 0, 0},                                            \

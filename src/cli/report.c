@@ -1,5 +1,6 @@
 #include "report.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -107,7 +108,8 @@ static void json_number(FILE *out, const char *name, double value) {
 
 void vs_report_json_flags(FILE *out, const vs_match_flags *flags) {
   fprintf(out,
-          "\"drive\": \"%s\", \"rules\": \"%s\", \"placement\": \"%s\", \"seconds\": %g, \"seed\": %d, \"realism\": ",
+          "\"drive\": \"%s\", \"rules\": \"%s\", \"placement\": \"%s\", \"seconds\": %g, \"seed\": %" PRIu64
+          ", \"realism\": ",
           flags->drive, flags->rules, flags->placement, flags->seconds, flags->seed);
   if (flags->realism)
     vs_report_json_text(out, flags->realism);

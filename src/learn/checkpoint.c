@@ -22,7 +22,7 @@ typedef struct counters {
 // What every checkpoint holds: settings, counters, networks, Adam.
 static void save_learner(const vs_train *train, vs_bytes *out) {
   const vs_learner *l = &train->learner;
-  char settings[4096];
+  char settings[VS_TRAIN_TEXT_MAX];
   counters numbers;
   memset(&numbers, 0, sizeof numbers);
   numbers.updates = train->updates, numbers.transitions = train->transitions;
@@ -31,7 +31,7 @@ static void save_learner(const vs_train *train, vs_bytes *out) {
   numbers.scale = train->scale;
   vs_archive_begin(out);
   vs_archive_section(out, "contract", vs_contract_hash_hex(), 16);
-  vs_archive_section(out, "settings", settings, vs_train_def_text(&train->def, settings, sizeof settings));
+  vs_archive_section(out, "settings", settings, vs_train_def_text(&train->def, false, settings, sizeof settings));
   vs_archive_section(out, "counters", &numbers, sizeof numbers);
   vs_archive_section(out, "parameters", l->parameters, l->net.size * sizeof(float));
   vs_archive_section(out, "mean", l->mean, l->net.size * sizeof(float));
@@ -135,7 +135,7 @@ vs_status vs_train_read_def(const char *path, vs_train_def *out, vs_error *err) 
   s = check_contract(&archive, used, err);
   if (s == VS_OK) s = vs_archive_find(&archive, used, "settings", 0, &data, &size, err);
   if (s == VS_OK) {
-    char text[4096];
+    char text[VS_TRAIN_TEXT_MAX];
     snprintf(text, sizeof text, "%.*s", (int)(size < sizeof text ? size : sizeof text - 1), (const char *)data);
     vs_config_key keys[VS_TRAIN_KEYS_MAX];
     *out = vs_train_def_default();

@@ -48,7 +48,7 @@ vs_status vs_train_imitate_over(vs_train *train, const vs_matches *matches, int 
   bool go_on = true;
   for (int i = 0; s == VS_OK && go_on && i < updates; i++) {
     double loss = 0.0;
-    s = update(train, vs_seed_mix((uint64_t)train->def.seed, 5000 + (uint64_t)i), &loss, err);
+    s = update(train, vs_seed_mix(train->def.seed, 5000 + (uint64_t)i), &loss, err);
     if (s == VS_OK && progress) go_on = progress(context, (i + 1.0) / updates, loss);
   }
   vs_rollout_free(&train->rollout);

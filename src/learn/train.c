@@ -1,4 +1,5 @@
 // The training loop: play a batch, learn from it, let the league look at the result.
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,7 +72,7 @@ static vs_status make_learner(vs_train *t, vs_error *err) {
   } else if (s == VS_OK) {
     s = choose_precision(t, &def, err);
   }
-  if (s == VS_OK) s = vs_learner_init(&t->learner, &def, t->pool, (uint64_t)t->def.seed, err);
+  if (s == VS_OK) s = vs_learner_init(&t->learner, &def, t->pool, t->def.seed, err);
   if (s != VS_OK) return s;
   t->learner.group = t->group;
   if (strcmp(t->def.learner, "torch") == 0) {
@@ -97,7 +98,7 @@ static vs_status make_league_and_rollout(vs_train *t, vs_error *err) {
   if (!t->actor) return vs_fail(err, VS_FAIL, "out of memory");
   vs_net_extract_actor(&t->learner.net, t->learner.parameters, &actor, t->actor);
   // Every rank plays its own matches.
-  uint64_t seed = vs_seed_mix((uint64_t)t->def.seed, 1000 + (uint64_t)vs_group_rank(t->group));
+  uint64_t seed = vs_seed_mix(t->def.seed, 1000 + (uint64_t)vs_group_rank(t->group));
   s = vs_league_init(&t->league, &league, t->def.envs, actor.size, t->actor, seed, err);
   const vs_rollout_def def = {t->def.envs, t->def.steps, t->def.gamma, t->def.lambda, seed, policy_io(&t->def)};
   if (s == VS_OK) s = vs_rollout_init(&t->rollout, &def, &t->learner, &t->league, err);
@@ -258,7 +259,7 @@ vs_status vs_train_update(vs_train *train, vs_train_report *report, vs_error *er
   s = vs_train_rescale(train, &batch, err);
   vs_learner_stats learnt = {0};
   train->learner.def.learning_rate = learning_rate(train);
-  uint64_t seed = vs_seed_mix((uint64_t)train->def.seed, (uint64_t)train->updates);
+  uint64_t seed = vs_seed_mix(train->def.seed, (uint64_t)train->updates);
   if (s == VS_OK) s = vs_learner_update(&train->learner, &batch, seed, &learnt, err);
   if (s == VS_OK) s = vs_train_sum_up(train, &train->rollout.stats, &learnt.last, err);
   if (s == VS_OK) s = advance(train, batch.rows, err);
@@ -304,11 +305,11 @@ vs_status vs_train_export(const vs_train *train, const char *path, bool with_spr
                           vs_error *err) {
   enum { OWN = 5, MAX = 24 };
   char numbers[3][32];
-  snprintf(numbers[0], sizeof numbers[0], "%d", train->def.seed);
+  snprintf(numbers[0], sizeof numbers[0], "%" PRIu64, train->def.seed);
   snprintf(numbers[1], sizeof numbers[1], "%lld", train->transitions);
   snprintf(numbers[2], sizeof numbers[2], "%.0f", train->wall_s);
-  char settings[4096];
-  vs_train_def_text(&train->def, settings, sizeof settings);
+  char settings[VS_TRAIN_TEXT_MAX];
+  vs_train_def_text(&train->def, false, settings, sizeof settings);
   vs_onnx_note note[MAX] = {{"seed", numbers[0]},
                             {"transitions", numbers[1]},
                             {"wall_s", numbers[2]},

@@ -1,4 +1,5 @@
 // The settings of a training run: defaults, presets, ranges.
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -130,7 +131,7 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       WHOLE(envs, 1, 4096, "matches side by side"),
       WHOLE(steps, 1, 4096, "decisions of each match per update"),
       WHOLE(threads, 1, 256, "threads"),
-      WHOLE(seed, 0, 2147483647, "everything random follows from it"),
+      {"seed", VS_CONFIG_SEED, &d->seed, 0, 0, 0, "everything random follows from it"},
       TEXT(opponent, "mix of self, frozen, pool and players, such as self=0.6,pool=0.4"),
       REAL(replace_score, -10, 10, "frozen: mean goal difference at which it is replaced"),
       SWITCH(window_of_zeros, "frozen: the paper's window of 100 results, never cleared"),
@@ -172,33 +173,47 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
 }
 
 // With as few digits as read back as the same number.
-static int print_real(char *line, size_t size, const char *name, double value) {
-  int n = 0;
+static void print_real(char *line, size_t size, const char *name, double value) {
   for (int digits = 6; digits <= 17; digits++) {
-    n = snprintf(line, size, "%s = %.*g\n", name, digits, value);
+    snprintf(line, size, "%s = %.*g\n", name, digits, value);
     if (strtod(strchr(line, '=') + 1, NULL) == value) break;
   }
-  return n;
 }
 
-size_t vs_train_def_text(const vs_train_def *def, char *out, size_t size) {
+static void add_text(const char *text, char *out, size_t size, size_t *used) {
+  size_t n = strlen(text);
+  if (*used + n < size) memcpy(out + *used, text, n + 1);
+  *used += n;
+}
+
+static void comment(const vs_config_key *k, char *line, size_t size) {
+  if (k->min != 0.0 || k->max != 0.0)
+    snprintf(line, size, "# %s; %.10g to %.10g\n", k->help, k->min, k->max);
+  else
+    snprintf(line, size, "# %s\n", k->help);
+}
+
+size_t vs_train_def_text(const vs_train_def *def, bool comments, char *out, size_t size) {
   vs_train_def copy = *def;
   vs_config_key keys[VS_TRAIN_KEYS_MAX];
   vs_train_schema(&copy, keys);
   size_t used = 0;
   for (const vs_config_key *k = keys; k->name; k++) {
-    char line[320];
-    int n = 0;
+    char line[768], quoted[640];
+    if (comments) comment(k, line, sizeof line), add_text(line, out, size, &used);
     switch (k->type) {
-    case VS_CONFIG_INT: n = snprintf(line, sizeof line, "%s = %d\n", k->name, *(int *)k->target); break;
-    case VS_CONFIG_REAL: n = print_real(line, sizeof line, k->name, *(double *)k->target); break;
+    case VS_CONFIG_INT: snprintf(line, sizeof line, "%s = %d\n", k->name, *(int *)k->target); break;
+    case VS_CONFIG_SEED: snprintf(line, sizeof line, "%s = %" PRIu64 "\n", k->name, *(uint64_t *)k->target); break;
+    case VS_CONFIG_REAL: print_real(line, sizeof line, k->name, *(double *)k->target); break;
     case VS_CONFIG_BOOL:
-      n = snprintf(line, sizeof line, "%s = %s\n", k->name, *(bool *)k->target ? "true" : "false");
+      snprintf(line, sizeof line, "%s = %s\n", k->name, *(bool *)k->target ? "true" : "false");
       break;
-    case VS_CONFIG_TEXT: n = snprintf(line, sizeof line, "%s = %s\n", k->name, (char *)k->target); break;
+    case VS_CONFIG_TEXT:
+      vs_config_quote(k->target, quoted, sizeof quoted);
+      snprintf(line, sizeof line, "%s = %s\n", k->name, quoted);
+      break;
     }
-    if (used + (size_t)n < size) memcpy(out + used, line, (size_t)n + 1);
-    used += (size_t)n;
+    add_text(line, out, size, &used);
   }
   return used;
 }

@@ -48,7 +48,7 @@ static vs_status open_vecenv(sim_matches *m, const vs_train_def *def, int rank, 
   vs_vecenv_def vec = {.env = vs_env_def_default(m->model),
                        .envs = def->envs,
                        .threads = def->threads,
-                       .seed = vs_seed_mix((uint64_t)def->seed, 2000 + (uint64_t)rank)};
+                       .seed = vs_seed_mix(def->seed, 2000 + (uint64_t)rank)};
   vec.env.referee = vs_referee_def_training();
   vec.env.referee.duration_s = def->episode_s;
   vec.env.shuffle_adversaries = true;

@@ -2,6 +2,7 @@
 #include "assert_near.h"
 #include "vsss/config.h"
 
+#include <stdio.h>
 #include <string.h>
 
 typedef struct settings {
@@ -53,6 +54,34 @@ static void bad_values_name_the_value_and_what_is_allowed(void **state) {
   refused("[train\n", "a.ini:1: '[train': expected [section]");
 }
 
+static void a_quoted_value_holds_any_character(void **state) {
+  (void)state;
+  assert_ok(vs_config_parse("a.ini", "name = \"#a;b \" ; comment\n", schema, err));
+  assert_string_equal(value.name, "#a;b ");
+  assert_ok(vs_config_parse("a.ini", "name=\"\\\"\\\\\\n\\r\"# comment\n", schema, err));
+  assert_string_equal(value.name, "\"\\\n\r");
+  assert_ok(vs_config_parse("a.ini", "name = \"\"\n", schema, err));
+  assert_string_equal(value.name, "");
+  refused("name = \"abc\n", "a.ini:1: name: expected a closing \"");
+  refused("name = \"a\" b\n", "expected a closing \" and nothing after it");
+  for (int c = 1; c < 256; c++) { // alone, first, in the middle, last
+    char text[8] = {0}, quoted[32], line[64];
+    for (int place = 0; place < 4; place++) {
+      snprintf(text, sizeof text, "%s%c%s", place > 1 ? "a" : "", c, place % 2 ? "b" : "");
+      vs_config_quote(text, quoted, sizeof quoted);
+      snprintf(line, sizeof line, "name = %s\n", quoted);
+      assert_ok(vs_config_parse("a.ini", line, schema, err));
+      if (strcmp(value.name, text)) fail_msg("character %d: %s", c, line);
+    }
+  }
+}
+
+static void a_key_sign_in_a_comment_is_no_key(void **state) {
+  (void)state;
+  assert_ok(vs_config_parse("a.ini", "# name = x\n; a = b\n[train] # a = 3\nenvs = 5 # = 6\n", schema, err));
+  assert_int_equal(value.envs, 5);
+}
+
 static void assignment_sets_a_key(void **state) {
   (void)state;
   assert_ok(vs_config_set("train.envs=7", schema, err));
@@ -73,6 +102,8 @@ int main(void) {
       cmocka_unit_test(sections_comments_and_all_types_are_read),
       cmocka_unit_test(unknown_key_names_file_line_key_and_the_nearest),
       cmocka_unit_test(bad_values_name_the_value_and_what_is_allowed),
+      cmocka_unit_test(a_quoted_value_holds_any_character),
+      cmocka_unit_test(a_key_sign_in_a_comment_is_no_key),
       cmocka_unit_test(assignment_sets_a_key),
       cmocka_unit_test(missing_file_is_named),
   };

@@ -113,6 +113,33 @@ static void a_run_against_any_player_continues(void **state) {
   }
 }
 
+// The settings of a run are a file: what begins a comment there must come back, and so must any seed.
+static void any_file_name_and_any_seed_survive_a_resume(void **state) {
+  (void)state;
+  static const char *const names[] = {"#r.ini",    "a;b.ini",     "with space.ini",
+                                      " edge.ini", "quote\".ini", "back\\slash.ini"};
+  static const char *const written[] = {"#r.ini\"",    "a;b.ini\"",       "with space.ini\n",
+                                        " edge.ini\n", "quote\\\".ini\"", "back\\\\slash.ini\""};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    char path[256], format[512];
+    snprintf(path, sizeof path, "%s/%s", folder, names[i]);
+    FILE *f = fopen(path, "w");
+    fprintf(f, "[latency_s]\nlow = 0.05\nhigh = 0.06\n");
+    fclose(f);
+    snprintf(format, sizeof format, "rm -rf '%s/q'", folder);
+    assert_int_equal(system(format), 0);
+    snprintf(format, sizeof format, "train --run %%s/q " SMALL "--transitions 0.0003 --seed %s --realism '%s'",
+             i % 2 ? "18446744073709551615" : "2100000000", path);
+    train(format);
+    train("train --resume %s/q --transitions 0.0006");
+    assert_non_null(strstr(content("%s/q/settings.ini"), written[i]));
+    assert_non_null(strstr(text, i % 2 ? "seed = 18446744073709551615\n" : "seed = 2100000000\n"));
+    assert_non_null(strstr(text, "# matches side by side; 1 to 4096\nenvs = 4\n"));
+    unlink(path); // the run reads it again, so it is not forgotten
+    assert_refused(with_folder("train --resume %s/q --transitions 0.0009"), 1, "No such file");
+  }
+}
+
 static void interrupting_a_run_saves_it(void **state) {
   (void)state;
   vsss_interrupt(&run, with_folder("train --run %s/i " SMALL), "training in");
@@ -247,6 +274,7 @@ int main(void) {
       cmocka_unit_test(two_runs_of_one_seed_are_the_same),
       cmocka_unit_test(a_small_checkpoint_begins_a_new_run),
       cmocka_unit_test(a_run_against_any_player_continues),
+      cmocka_unit_test(any_file_name_and_any_seed_survive_a_resume),
       cmocka_unit_test(interrupting_a_run_saves_it),
       cmocka_unit_test(evaluation_is_written_beside_the_progress),
       cmocka_unit_test(a_script_is_imitated_before_the_run),

@@ -39,7 +39,7 @@ static void settings_read_back_as_they_were_written(void **state) {
   def.value_scale = true;
   snprintf(def.reward, sizeof def.reward, "dense,approach=0.3");
   snprintf(def.opponent, sizeof def.opponent, "self=0.5,emc:?pid=1=0.5");
-  assert_true(vs_train_def_text(&def, text, sizeof text) < sizeof text);
+  assert_true(vs_train_def_text(&def, false, text, sizeof text) < sizeof text);
   assert_non_null(strstr(text, "clip = 0.2\n")); // as a person would write it
   assert_ok(vs_train_def_preset("default", &read, err));
   vs_train_schema(&read, keys);
