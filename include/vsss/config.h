@@ -12,7 +12,13 @@
 extern "C" {
 #endif
 
-typedef enum vs_config_type { VS_CONFIG_INT, VS_CONFIG_REAL, VS_CONFIG_BOOL, VS_CONFIG_TEXT, VS_CONFIG_SEED } vs_config_type;
+typedef enum vs_config_type {
+  VS_CONFIG_INT,
+  VS_CONFIG_REAL,
+  VS_CONFIG_BOOL,
+  VS_CONFIG_TEXT,
+  VS_CONFIG_SEED
+} vs_config_type;
 
 // One key of a schema. Keys of an INI section are written "section.key". The value is stored at target, which is an
 // int, double, bool, char[text_size] or uint64_t (VS_CONFIG_SEED). Numbers outside [min, max] are refused (min == max == 0: no limits).

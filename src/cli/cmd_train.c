@@ -251,10 +251,7 @@ static void save_now(void *context) {
 
 static vs_status run(session *s, vs_error *err) {
   bool stop = vs_train_done(s->train) || vs_cli_interrupted();
-  // A run that has learnt nothing yet can be continued, too.
-  vs_status status = s->first ? vs_train_keep(s->train, err) : VS_OK;
-  if (status == VS_OK && s->first && !s->continued) status = save_checkpoint(s, err);
-  if (status == VS_OK) status = vs_group_any(s->group, &stop, err);
+  vs_status status = vs_group_any(s->group, &stop, err);
   s->start_s = s->checkpoint_s = s->eval_s = now_s();
   vs_progress_start(&s->progress);
   while (status == VS_OK && !stop) {
@@ -267,6 +264,12 @@ static vs_status run(session *s, vs_error *err) {
   vs_progress_clear(&s->progress);
   if (status == VS_OK && s->first) status = save(s, err);
   return status;
+}
+
+// A run can be continued from its start on, before it has learnt anything.
+static vs_status begin(session *s, vs_error *err) {
+  vs_status status = s->first ? vs_train_keep(s->train, err) : VS_OK;
+  return status == VS_OK && s->first && !s->continued ? save_checkpoint(s, err) : status;
 }
 
 static vs_status prepare(session *s, const vs_train_def *def, vs_error *err) {
@@ -306,6 +309,7 @@ static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
   if (status == VS_OK) status = vs_group_open(&s.group, err);
   s.first = vs_group_rank(s.group) == 0;
   if (status == VS_OK) status = prepare(&s, &def, err);
+  if (status == VS_OK) status = begin(&s, err);
   if (status == VS_OK && s.first) {
     if (s.group) printf("%d ranks, each:\n", vs_group_size(s.group));
     printf("training in %s: %d matches x %d steps, %d threads, %s drive, against %s; %s\n", s.folder, def.envs,
@@ -313,6 +317,7 @@ static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
     fflush(stdout);
   }
   if (status == VS_OK && o->imitate) status = imitate(&s, err);
+  if (status == VS_OK && o->imitate) status = begin(&s, err);
   if (status == VS_OK) status = run(&s, err);
   if (status == VS_OK && s.first)
     printf("%s at %.2f M transitions after %.1f min of training: %s/checkpoint, %s/policy.onnx\n",

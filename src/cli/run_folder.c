@@ -25,11 +25,13 @@ vs_status vs_run_folder_lock(const char *folder, vs_error *err) {
   int file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0644); // closed by the process's end, and the lock with it
   if (file < 0) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
   if (flock(file, LOCK_EX | LOCK_NB) != 0) {
-    ssize_t n = errno == EWOULDBLOCK ? read(file, text, sizeof text - 1) : -1;
-    text[n < 0 ? 0 : n] = '\0';
-    s = n < 0 ? vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno))
-              : vs_fail(err, VS_USAGE, "%s: %.*s trains in it: wait for its end, or choose another --run", folder,
-                        (int)strcspn(text, "\n"), text);
+    int why = errno;
+    ssize_t n = why == EWOULDBLOCK ? read(file, text, sizeof text - 1) : -1;
+    text[n > 0 ? n : 0] = '\0';
+    text[strcspn(text, "\n")] = '\0';
+    s = why == EWOULDBLOCK
+            ? vs_fail(err, VS_USAGE, "%s: %s trains in it: wait for its end, or choose another --run", folder, text)
+            : vs_fail(err, VS_FAIL, "%s: %s", path, strerror(why));
     close(file);
     return s;
   }

@@ -73,8 +73,8 @@ bool vs_referee_ok(const vs_referee *r, const vs_referee_def *def) {
   const vs_referee_def *d = &r->def;
   bool same = d->rules == def->rules && d->placement == def->placement && d->duration_s == def->duration_s &&
               d->goal_difference_stop == def->goal_difference_stop && vs_are_bools(&d->end_at_first_goal, 1) &&
-              d->end_at_first_goal == def->end_at_first_goal && d->halves == def->halves &&
-              d->kick_off == def->kick_off;
+              d->end_at_first_goal == def->end_at_first_goal && d->halves == def->halves && is_team(d->kick_off) &&
+              vs_all_finite(&d->still_s, 1) && d->still_s > 0; // an episode draws these two
   return same && game_ok(&r->game) && vs_are_bools(&r->over, 1) && is_team(r->kick_off) && r->half >= 0 &&
          r->half <= 1 && vs_all_finite(&r->still_x_m, 3) && r->play_area >= -1 && r->play_area < VS_TEAMS &&
          vs_all_finite(&r->defence_s, 4);

@@ -40,17 +40,19 @@ static bool params_ok(const vs_sim_params *p) {
 vs_status vs_sim_restore(vs_sim *sim, const void *state, vs_error *err) {
   snapshot head;
   memcpy(&head, state, sizeof head);
-  size_t numbers = (size_t)(sim->mj->nq + 3 * sim->mj->nv);
+  const void *after = (const char *)state + sizeof head;
+  const double *numbers = after;
+  size_t count = (size_t)(sim->mj->nq + 3 * sim->mj->nv);
   if (!params_ok(&head.params) || !vs_all_finite(&head.time, 1) ||
       !vs_all_finite(&head.wheel[0][0].target_radps, sizeof head.wheel / sizeof(double)) ||
-      !vs_all_finite((const double *)((const char *)state + sizeof head), numbers))
+      !vs_all_finite(numbers, count))
     return vs_fail(err, VS_FAIL, "the snapshot of the simulator is damaged");
   vs_sim_reset(sim, &head.params);
   sim->frame = head.frame;
   sim->push_rng = head.push_rng;
   sim->data->time = head.time;
   memcpy(sim->wheel, head.wheel, sizeof head.wheel);
-  const char *at = (const char *)state + sizeof head;
+  const char *at = after;
   size_t nq = sizeof(double) * (size_t)sim->mj->nq, nv = sizeof(double) * (size_t)sim->mj->nv;
   memcpy(sim->data->qpos, at, nq);
   memcpy(sim->data->qvel, at + nq, nv);
