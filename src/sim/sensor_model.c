@@ -46,7 +46,9 @@ bool vs_sensors_ok(const vs_sensors *s) {
   bool ok = vs_are_bools(&s->noise, 1) && vs_are_bools(&s->have_last, 1) && vs_all_finite(&s->noise_scale, 9) &&
             bursts_ok(&s->detection_burst_frames) && bursts_ok(&s->radio_burst_frames) &&
             vs_all_finite(&s->queue[0][0][0].left_radps, sizeof s->queue / sizeof(double)) &&
-            vs_all_finite(&s->applied[0][0].left_radps, sizeof s->applied / sizeof(double));
+            vs_all_finite(&s->applied[0][0].left_radps, sizeof s->applied / sizeof(double)) &&
+            vs_all_finite(&s->filter[0][0].value, sizeof s->filter / sizeof(double)) &&
+            vs_are_bools(s->filtering, VS_SENSOR_OBJECTS);
   for (int i = 0; i < VS_SENSOR_OBJECTS; i++)
     ok = ok && s->lost_frames[i] >= 0 && s->held_frames[i] >= 0 && s->held_frames[i] < 1000000000;
   for (int t = 0; t < VS_TEAMS; t++) ok = ok && s->radio_lost_frames[t] >= 0;
