@@ -17,9 +17,9 @@ struct vs_train {
   vs_rollout rollout;
   vs_value_scale scale;
   vs_reward_weights reward_start, reward_end;
-  float *actor;              // [rollout.actor.size]: the present actor, for the league
-  const vs_group *group;     // NULL: alone
-  vs_gradient_engine engine; // gradient NULL: our kernels
+  float *actor;                           // [rollout.actor.size]: the present actor, for the league
+  const vs_group *group;                  // NULL: alone
+  vs_gradient_engine engine;              // gradient NULL: our kernels
   char products[128], products_times[80]; // what multiplies the matrices, and how fast it was where it was chosen
   long long updates, transitions;
   double wall_s;
