@@ -3,7 +3,6 @@
 #include <limits.h>
 #include <math.h>
 #include <pthread.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +12,7 @@
 #include "cli.h"
 #include "commands.h"
 #include "run_folder.h"
+#include "train_text.h"
 #include "vsss/clock.h"
 #include "vsss/journal.h"
 #include "vsss/learn.h"
@@ -118,37 +118,10 @@ static vs_status save(session *s, vs_error *err) {
   return status;
 }
 
-static void append(char *out, size_t size, const char *format, ...) {
-  size_t used = strlen(out);
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(out + used, size - used, format, arguments);
-  va_end(arguments);
-}
-
-// Three lines: how fast; the reward and what its terms add to it; how the policy learns and fares.
-static void status_text(const session *s, char *out, size_t size) {
-  const vs_train_report *r = &s->report;
-  double percent = 100.0 / (r->simulate_s + r->infer_s + r->learn_s);
-  out[0] = '\0';
-  append(out, size, "%.2f M, %.0f/s (sim %.0f infer %.0f learn %.0f %%)", r->transitions * 1e-6, r->transitions_per_s,
-         percent * r->simulate_s, percent * r->infer_s, percent * r->learn_s);
-  append(out, size, "\n  reward %+.3f:", r->reward);
-  for (int k = 0; k < VS_REWARD_TERMS; k++)
-    if (r->weight[k] != 0.0)
-      append(out, size, " %s %+.3f", vs_reward_name((vs_reward_term)k), r->weight[k] * r->term[k]);
-  append(out, size, "\n  entropy %.2f kl %.4f clipped %.2f explained %.2f  score", r->entropy, r->kl, r->clip_fraction,
-         r->explained_variance);
-  vs_train_opponent opponent[8];
-  int count = vs_train_opponents(s->train, opponent, 8);
-  for (int i = 0; i < count; i++) append(out, size, " %s %+.2f", opponent[i].name, opponent[i].recent_score);
-  append(out, size, ", %.0f replaced", r->replacements);
-}
-
 // Lines that rewrite themselves on a terminal, a line a minute elsewhere.
 static void show(session *s) {
   char text[1024];
-  status_text(s, text, sizeof text);
+  train_text(s->train, &s->report, text, sizeof text);
   const vs_train_def *def = vs_train_settings(s->train);
   double fraction = def->transitions_m > 0.0 ? s->report.transitions * 1e-6 / def->transitions_m : 0.0;
   if (s->opt->minutes > 0.0) fraction = fmax(fraction, (now_s() - s->start_s) / (60.0 * s->opt->minutes));
@@ -266,6 +239,23 @@ static vs_status run(session *s, vs_error *err) {
   return status;
 }
 
+static bool sets_limit(const options *o) {
+  bool set = o->transitions_m > 0.0 || o->config;
+  for (int i = 0; i < o->set.count; i++) set |= strncmp(o->set.value[i], "transitions_m", 13) == 0;
+  return set;
+}
+
+// A new run from a checkpoint that is done: as long again as a run of ours is, unless the user says how long.
+static void raise_limit(session *s) {
+  if (!resumes_file(s->opt) || !vs_train_done(s->train) || sets_limit(s->opt)) return;
+  double old = vs_train_settings(s->train)->transitions_m, more = vs_train_def_default().transitions_m;
+  double limit = vs_train_transitions(s->train) * 1e-6 + more;
+  vs_train_go_on(s->train, limit);
+  if (s->first)
+    printf("%s has reached its limit of %.6g M transitions: going on to %.6g M (--transitions sets another)\n",
+           s->opt->resume, old, limit);
+}
+
 // A run can be continued from its start on, before it has learnt anything.
 static vs_status begin(session *s, vs_error *err) {
   vs_status status = s->first ? vs_train_keep(s->train, err) : VS_OK;
@@ -285,6 +275,7 @@ static vs_status prepare(session *s, const vs_train_def *def, vs_error *err) {
     checkpoint_to_resume(s->opt, path, sizeof path);
     status = vs_train_load(s->train, path, note, err);
     if (status == VS_OK && note[0]) printf("%s\n", note);
+    if (status == VS_OK) raise_limit(s);
   }
   if (status == VS_OK && s->first) status = vs_run_folder_note(s->folder, s->command, s->commit, err);
   if (status != VS_OK || !s->first) return status;
@@ -319,10 +310,13 @@ static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
   if (status == VS_OK && o->imitate) status = imitate(&s, err);
   if (status == VS_OK && o->imitate) status = begin(&s, err);
   if (status == VS_OK) status = run(&s, err);
-  if (status == VS_OK && s.first)
+  if (status == VS_OK && s.first) {
+    bool done = vs_train_done(s.train);
     printf("%s at %.2f M transitions after %.1f min of training: %s/checkpoint, %s/policy.onnx\n",
-           vs_train_done(s.train) ? "done" : "stopped", vs_train_transitions(s.train) * 1e-6, s.report.wall_s / 60.0,
-           s.folder, s.folder);
+           done ? "done" : "stopped", vs_train_transitions(s.train) * 1e-6, vs_train_wall_s(s.train) / 60.0, s.folder,
+           s.folder);
+    vs_run_folder_next(s.folder, done ? vs_train_settings(s.train)->transitions_m : 0.0);
+  }
   pthread_mutex_lock(&s.alive); // for good: an interrupt that comes too late waits for the end
   vs_journal_close(s.journal);
   vs_train_free(s.train);

@@ -5,6 +5,7 @@
 #include <limits.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <time.h>
@@ -77,4 +78,25 @@ vs_status vs_run_folder_note(const char *folder, const char *command, const char
   fprintf(f, "%s  host %s, %ld processors, commit %s\n  %s\n", when, host, sysconf(_SC_NPROCESSORS_ONLN), commit,
           command);
   return fclose(f) == 0 ? VS_OK : vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
+}
+
+static void print_next(char *words[], int count, const char *about) {
+  char line[2 * PATH_MAX];
+  vs_run_folder_command(count, words, line, sizeof line);
+  printf("  ./%-60s  %s\n", line, about);
+}
+
+void vs_run_folder_next(const char *folder, double limit_m) {
+  char policy[PATH_MAX + 32], limit[32], eval[] = "eval", blue[] = "--blue", plot[] = "plot", train[] = "train",
+                                         resume[] = "--resume", transitions[] = "--transitions";
+  char *name = strdup(folder);
+  if (!name) return;
+  snprintf(policy, sizeof policy, "onnx:%s/policy.onnx", folder);
+  snprintf(limit, sizeof limit, "%.6g", 2.0 * limit_m);
+  printf("next:\n");
+  print_next((char *[]){eval, blue, policy}, 3, "how it plays");
+  print_next((char *[]){plot, name}, 2, "how it learnt");
+  print_next((char *[]){train, resume, name, transitions, limit}, limit_m > 0.0 ? 5 : 3,
+             limit_m > 0.0 ? "learns on, to another limit" : "learns on");
+  free(name);
 }

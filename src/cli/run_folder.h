@@ -13,5 +13,7 @@ vs_status vs_run_folder_lock(const char *folder, vs_error *err);
 void vs_run_folder_command(int argc, char **argv, char *out, size_t size);
 // Adds to folder/history.txt when and where this program was started, its commit and the command line.
 vs_status vs_run_folder_note(const char *folder, const char *command, const char *commit, vs_error *err);
+// Prints the commands that may come next, to be pasted; limit_m: of a run that has reached it, else 0.
+void vs_run_folder_next(const char *folder, double limit_m);
 
 #endif

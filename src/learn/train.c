@@ -276,9 +276,16 @@ bool vs_train_done(const vs_train *train) {
   return train->def.transitions_m > 0.0 && (double)train->transitions >= train->def.transitions_m * 1e6;
 }
 
+void vs_train_go_on(vs_train *train, double transitions_m) {
+  train->def.transitions_m = transitions_m;
+  train->def.learning_rate = train->def.learning_rate_end;
+}
+
 double vs_train_updates(const vs_train *train) { return (double)train->updates; }
 
 double vs_train_transitions(const vs_train *train) { return (double)train->transitions; }
+
+double vs_train_wall_s(const vs_train *train) { return train->wall_s; }
 
 const char *vs_train_products(const vs_train *train) { return train->products; }
 

@@ -140,6 +140,22 @@ static void any_file_name_and_any_seed_survive_a_resume(void **state) {
   }
 }
 
+// As the README's command does with the checkpoint that comes with vsss.
+static void a_checkpoint_that_is_done_trains_on_and_says_how_far(void **state) {
+  (void)state;
+  train("train --run %s/f " SMALL "--transitions 0.0003 --slim %s/done");
+  assert_non_null(strstr(run.out, "/f --transitions 0.0006"));
+  assert_non_null(strstr(run.out, "./vsss eval --blue onnx:"));
+  train("train --run %s/g --resume %s/done --minutes 0.0001");
+  assert_non_null(strstr(run.out, "has reached its limit of 0.0003 M transitions: going on to 60.0006 M"));
+  assert_non_null(strstr(run.out, "stopped at"));
+  assert_int_equal(lines(content("%s/g/progress.csv")), 1 + 1);
+  // A limit that was given is kept.
+  train("train --run %s/l --resume %s/done --transitions 0.0001");
+  assert_non_null(strstr(run.out, "done at"));
+  assert_int_equal(lines(content("%s/l/progress.csv")), 1);
+}
+
 static void interrupting_a_run_saves_it(void **state) {
   (void)state;
   vsss_interrupt(&run, with_folder("train --run %s/i " SMALL), "training in");
@@ -275,6 +291,7 @@ int main(void) {
       cmocka_unit_test(a_small_checkpoint_begins_a_new_run),
       cmocka_unit_test(a_run_against_any_player_continues),
       cmocka_unit_test(any_file_name_and_any_seed_survive_a_resume),
+      cmocka_unit_test(a_checkpoint_that_is_done_trains_on_and_says_how_far),
       cmocka_unit_test(interrupting_a_run_saves_it),
       cmocka_unit_test(evaluation_is_written_beside_the_progress),
       cmocka_unit_test(a_script_is_imitated_before_the_run),
