@@ -117,7 +117,7 @@ bool vs_train_done(const vs_train *train); // transitions_m reached
 void vs_train_go_on(vs_train *train, double transitions_m);
 double vs_train_updates(const vs_train *train);
 double vs_train_transitions(const vs_train *train);
-double vs_train_wall_s(const vs_train *train); // of training so far, over all resumes
+double vs_train_wall_s(const vs_train *train);        // of training so far, over all resumes
 const char *vs_train_products(const vs_train *train); // such as "gradients in bf16 by oneDNN (...)"
 const vs_train_def *vs_train_settings(const vs_train *train);
 // Results against kind k of the opponent mix: its name, episodes, win, draw, loss so far, recent mean goal difference.
