@@ -41,6 +41,7 @@ vs_realism vs_realism_default(void); // the paper's noise only
 // INI over the default: one section per range of the struct with keys low and high; noise = true or false and
 // ideal_share = 0 to 1 at the top.
 vs_status vs_realism_load(const char *path, vs_realism *out, vs_error *err);
+vs_status vs_realism_parse(const char *name_for_errors, const char *text, vs_realism *out, vs_error *err);
 // The simulator's parameters of the episode with this seed.
 vs_sim_params vs_realism_draw(const vs_realism *realism, uint64_t seed);
 

@@ -66,11 +66,14 @@ static vs_status act(vs_obs_player *base, const float *obs, int rows, float *act
   return s;
 }
 
-// The library that setup.sh put under build/ (Debian 12), else the system's (Debian 13).
+// The library that $VSSS_ONNXRUNTIME names, the one that setup.sh put under build/ (Debian 12), the system's (Debian 13).
 static vs_status load_library(onnx_player *p, vs_error *err) {
   char path[PATH_MAX];
   void *library = NULL;
-  if (vs_path_find("build/onnxruntime/lib/libonnxruntime.so.1", path, sizeof path, NULL) == VS_OK)
+  const char *given = getenv("VSSS_ONNXRUNTIME");
+  if (given && !(library = dlopen(given, RTLD_NOW | RTLD_LOCAL)))
+    return vs_fail(err, VS_FAIL, "%s: VSSS_ONNXRUNTIME=%s cannot be loaded: %s", p->file, given, dlerror());
+  if (!library && vs_path_find("build/onnxruntime/lib/libonnxruntime.so.1", path, sizeof path, NULL) == VS_OK)
     library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
   static const char *const names[] = {"libonnxruntime.so.1", "libonnxruntime.so.1.21", "libonnxruntime.so"};
   for (size_t i = 0; !library && i < sizeof names / sizeof *names; i++)

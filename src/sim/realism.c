@@ -54,7 +54,8 @@ vs_realism vs_realism_default(void) {
   return realism;
 }
 
-vs_status vs_realism_load(const char *path, vs_realism *out, vs_error *err) {
+// From a file, or where text is given from that, under the name of path.
+static vs_status read_ranges(const char *path, const char *text, vs_realism *out, vs_error *err) {
   vs_realism realism = vs_realism_default();
   char names[2 * ROWS][48];
   enum { FIRST = 2 };
@@ -72,7 +73,7 @@ vs_status vs_realism_load(const char *path, vs_realism *out, vs_error *err) {
                                         .max = from->max,
                                         .help = from->help};
   }
-  vs_status status = vs_config_load(path, schema, err);
+  vs_status status = text ? vs_config_parse(path, text, schema, err) : vs_config_load(path, schema, err);
   if (status != VS_OK) return status;
   for (size_t i = 0; i < ROWS; i++) {
     const vs_range *range = range_of(&realism, i);
@@ -82,6 +83,14 @@ vs_status vs_realism_load(const char *path, vs_realism *out, vs_error *err) {
   }
   *out = realism;
   return VS_OK;
+}
+
+vs_status vs_realism_load(const char *path, vs_realism *out, vs_error *err) {
+  return read_ranges(path, NULL, out, err);
+}
+
+vs_status vs_realism_parse(const char *name_for_errors, const char *text, vs_realism *out, vs_error *err) {
+  return read_ranges(name_for_errors, text, out, err);
 }
 
 static double draw(vs_rng *rng, vs_range range) { return vs_rng_range(rng, range.low, range.high); }
