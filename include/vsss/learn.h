@@ -21,6 +21,7 @@ typedef struct vs_train_def {
   char realism[256];  // INI file of sensors and dynamics; empty: the paper's noise only
   char placement[16]; // random or paper
   double episode_s;
+  double still_distance_m;                           // a ball that stays within it lies still; 0.02 by the rules
   double still_low_s, still_high_s;                  // how long the ball may lie still, drawn for each episode
   double start_open, start_penalty, start_free_ball; // shares of episodes that begin so; the rest kick off
   int envs, steps;                                   // matches side by side; decisions of each per update

@@ -35,7 +35,8 @@ typedef struct vs_referee_def {
   bool end_at_first_goal;   // training episodes
   int halves;               // 1 (paper) or 2 (league); sides are not changed
   vs_team kick_off;         // who begins
-  double still_s;           // paper's rules: a free ball after so long; VS_STILL_S
+  double still_s;           // paper's rules: a free ball after so long within still_distance_m; VS_STILL_S
+  double still_distance_m;  // VS_STILL_DISTANCE_M
 } vs_referee_def;
 
 vs_referee_def vs_referee_def_default(vs_rules rules); // a match: paper 120 s, league 2 x 300 s

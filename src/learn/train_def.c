@@ -18,8 +18,9 @@ vs_train_def vs_train_def_default(void) {
       .realism = "deploy/config/training.ini",
       .placement = "random",
       .episode_s = 40.0,
-      .still_low_s = 2.0,
-      .still_high_s = 10.0,
+      .still_distance_m = 0.1,
+      .still_low_s = 1.0,
+      .still_high_s = 5.0,
       .start_open = 0.35,
       .start_penalty = 0.1,
       .start_free_ball = 0.1,
@@ -63,6 +64,7 @@ vs_train_def vs_train_def_default(void) {
 // Every episode a kick-off by the rules' own clock; the network sees and drives as the contract says.
 static void without_levers(vs_train_def *def) {
   def->realism[0] = '\0';
+  def->still_distance_m = VS_STILL_DISTANCE_M;
   def->still_low_s = def->still_high_s = VS_STILL_S;
   def->start_open = def->start_penalty = def->start_free_ball = 0.0;
   def->canonical = false;
@@ -123,6 +125,7 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       TEXT(realism, "INI file of sensors and dynamics, drawn anew each episode"),
       TEXT(placement, "restarts: random (legal poses) or paper"),
       REAL(episode_s, 1, 600, "an episode ends here, or at the first goal"),
+      REAL(still_distance_m, 0.001, 1, "a ball that stays within this distance lies still (a jam, a duel at the wall)"),
       REAL(still_low_s, 0.5, 60, "free ball after so many seconds of a still ball, drawn for each episode"),
       REAL(still_high_s, 0.5, 60, "... up to"),
       REAL(start_open, 0, 1, "share of episodes that begin in open play, ball rolling"),

@@ -51,6 +51,7 @@ static vs_status open_vecenv(sim_matches *m, const vs_train_def *def, int rank, 
                        .seed = vs_seed_mix(def->seed, 2000 + (uint64_t)rank)};
   vec.env.referee = vs_referee_def_training();
   vec.env.referee.duration_s = def->episode_s;
+  vec.env.referee.still_distance_m = def->still_distance_m;
   vec.env.shuffle_adversaries = true;
   vec.env.episode = (vs_episode_def){.open_play = def->start_open,
                                      .penalty = def->start_penalty,

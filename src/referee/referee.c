@@ -14,7 +14,8 @@ vs_referee_def vs_referee_def_default(vs_rules rules) {
                         .goal_difference_stop = 10,
                         .halves = 1,
                         .kick_off = VS_BLUE,
-                        .still_s = VS_STILL_S};
+                        .still_s = VS_STILL_S,
+                        .still_distance_m = VS_STILL_DISTANCE_M};
   if (rules == VS_RULES_LEAGUE) {
     def.duration_s = 600;
     def.halves = 2;
@@ -36,6 +37,8 @@ static vs_status check_def(const vs_referee_def *def, vs_error *err) {
   if (def->goal_difference_stop < 0)
     return vs_fail(err, VS_USAGE, "goal difference %d: 0 (never ends the match) or more", def->goal_difference_stop);
   if (!(def->still_s > 0)) return vs_fail(err, VS_USAGE, "a still ball for %g s: more than 0", def->still_s);
+  if (!(def->still_distance_m > 0))
+    return vs_fail(err, VS_USAGE, "a still ball within %g m: more than 0", def->still_distance_m);
   if (def->halves != 1 && def->halves != 2) return vs_fail(err, VS_USAGE, "%d halves: 1 or 2", def->halves);
   return VS_OK;
 }

@@ -4,7 +4,7 @@
 
 void vs_paper_clocks(vs_referee *r, const vs_world *world, const vs_facts *f) {
   const vs_ball *ball = &world->ball;
-  if (vs_distance_m(ball->x_m, ball->y_m, r->still_x_m, r->still_y_m) < VS_STILL_DISTANCE_M) {
+  if (vs_distance_m(ball->x_m, ball->y_m, r->still_x_m, r->still_y_m) < r->def.still_distance_m) {
     r->still_s += f->dt_s;
     return;
   }
