@@ -95,6 +95,20 @@ static void restart_forgets_how_long_the_ball_lay_still(void **state) {
   assert_near(took_s, 10, 1e-9);
 }
 
+// Training's own clock: 3 s within 10 cm. A jam that wanders by 9 cm is one, a ball that gets 11 cm away is not.
+static void a_clock_of_its_own_judges_by_its_time_and_distance(void **state) {
+  (void)state;
+  vs_world near = quiet_world(0.3, 0.1), jam = quiet_world(0.39, 0.1), away = quiet_world(0.41, 0.1);
+  vs_referee r = referee_of(VS_RULES_PAPER, &near);
+  r.def.still_s = 3;
+  r.def.still_distance_m = 0.1;
+  for (int n = 0; n < 89; n++) assert_int_equal(vs_referee_step(&r, n % 2 ? &near : &jam, FRAME_S).kind, VS_EVENT_NONE);
+  assert_event(vs_referee_step(&r, &jam, FRAME_S), VS_EVENT_FREE_BALL, VS_BLUE, 1);
+  vs_referee_restarted(&r, &near);
+  for (int n = 0; n < 200; n++)
+    assert_int_equal(vs_referee_step(&r, n % 60 ? &near : &away, FRAME_S).kind, VS_EVENT_NONE);
+}
+
 static void ball_over_the_wall_is_a_free_ball(void **state) {
   (void)state;
   static const struct {
@@ -117,6 +131,7 @@ int main(void) {
       cmocka_unit_test(ball_that_creeps_two_centimetres_starts_the_clock_anew),
       cmocka_unit_test(ball_that_oscillates_by_less_than_two_centimetres_is_still),
       cmocka_unit_test(restart_forgets_how_long_the_ball_lay_still),
+      cmocka_unit_test(a_clock_of_its_own_judges_by_its_time_and_distance),
       cmocka_unit_test(ball_over_the_wall_is_a_free_ball),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
