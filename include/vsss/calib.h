@@ -40,6 +40,10 @@ vs_status vs_calib_check_size(const vs_calib *calib, const char *path, int width
 bool vs_calib_to_field(const vs_calib *calib, double x_px, double y_px, double h_m, double *x_m, double *y_m);
 // Pixel of a field point. false: behind the camera.
 bool vs_calib_to_pixel(const vs_calib *calib, double x_m, double y_m, double z_m, double *x_px, double *y_px);
+// Pose of a square that lies h_m over the floor, from its corners bottom left, bottom right, top right, top left: its
+// middle, and the direction from its bottom to its top. The one way from a mark's corners to a robot. false: as above.
+bool vs_calib_square(const vs_calib *calib, const double corner_px[4][2], double h_m, double *x_m, double *y_m,
+                     double *theta_rad);
 // Scale in the field's centre at height h_m.
 double vs_calib_px_per_m(const vs_calib *calib, double h_m);
 void vs_calib_lens(const vs_calib *calib, double lens_m[3]); // where the camera is

@@ -1,9 +1,10 @@
-// One frame -> what can be seen in it, in pixels: own tags, orange balls, adversaries' colour patches. Knows nothing of
+// One frame -> what can be seen in it, in pixels: marks of robots, orange balls, adversaries' colour patches. Knows nothing of
 // metres (calib.h) nor of the frames before (track.h). No allocation per frame beyond libapriltag's own.
 #ifndef VSSS_DETECT_H
 #define VSSS_DETECT_H
 
 #include "vsss/camera.h"
+#include "vsss/mark.h"
 #include "vsss/world.h"
 
 #ifdef __cplusplus
@@ -14,7 +15,9 @@ extern "C" {
 // have 35 mm to 80 mm: field.ini [vision] patch_m.
 #define VS_PATCH_M 0.06
 
+// A mark with a name and a front, whatever its kind.
 typedef struct vs_tag {
+  vs_mark kind;
   int id;
   int hamming;            // bits corrected
   double margin;          // contrast of the decoded bits, 0..255; real tags > 100, phantoms < 5 (field.md 1.5)
@@ -22,6 +25,7 @@ typedef struct vs_tag {
   double corner_px[4][2]; // of the tag's border: bottom left, bottom right, top right, top left of the printed pattern
 } vs_tag;
 
+enum { VS_TAG_MOST_IDS = 16 };
 typedef struct vs_tag_def {
   const char *family;       // VS_TAG_FAMILY, tag25h9, tag36h11, ...
   double decimate;          // tags are searched in a picture smaller by this; 1 finds the smallest
@@ -31,6 +35,10 @@ typedef struct vs_tag_def {
   int bits_corrected;       // 1: 2 costs 175 MB and 99 ms (field.md 1.2)
   int max_hamming;          // accepted: 1
   double min_margin;        // accepted: 40
+  // Of family VS_TAG_ARUCO only:
+  double side_px; // expected of its border; 0: not known
+  int ids;        // looked for; 0: the league's six
+  int id[VS_TAG_MOST_IDS];
 } vs_tag_def;
 vs_tag_def vs_tag_def_field(void); // the field's camera, as above, decimate 2 (a third of the time, 0.1 mm worse)
 vs_tag_def vs_tag_def_photo(void); // any photograph: libapriltag's own thresholds, decimate 1
@@ -66,7 +74,8 @@ typedef struct vs_detections {
 } vs_detections;
 
 typedef struct vs_detector_def {
-  vs_tag_def tag;
+  vs_tag_def tag;          // AprilTags; its thresholds count for ArUco marks too
+  vs_mark own, their;      // VS_MARK_APRIL, VS_MARK_PATCH
   vs_team adversary;       // whose colour is looked for
   vs_colour ball, team[2]; // team[VS_BLUE], team[VS_YELLOW]
   double tag_paper_m;      // VS_TAG_PAPER_M

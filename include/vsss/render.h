@@ -16,15 +16,20 @@ extern "C" {
 
 typedef enum vs_view { VS_VIEW_BROADCAST, VS_VIEW_CAMERA } vs_view;
 
+// A picture printed on a robot's cap, size_m wide in the middle of white: px x px of red, green, blue, row 0 at the robot's
+// front, column 0 on its left. Read by vs_render_new only.
+typedef struct vs_cap {
+  const uint8_t *rgb;
+  int px;
+  double size_m;
+} vs_cap;
+
 typedef struct vs_render_def {
   vs_view view;
   int width_px, height_px; // 64..3840 x 64..2160
-  // The picture on each robot's cap: square, cap_px x cap_px bytes of grey, row 0 at the robot's front, column 0 on its
-  // left (a tag pattern as tag.h gives it); cap_size_m is the printed width. NULL: the team's colour with two identity
-  // patches, or for CAMERA a dark cap with a team-coloured square of VS_RENDER_PATCH_M. Read by vs_render_new only.
-  const uint8_t *cap[VS_TEAMS][VS_TEAM_SIZE];
-  int cap_px;
-  double cap_size_m;
+  // What each robot wears. rgb NULL: the team's colour with two identity patches, or for CAMERA a dark cap with a
+  // team-coloured square of VS_RENDER_PATCH_M.
+  vs_cap cap[VS_TEAMS][VS_TEAM_SIZE];
   double camera_height_m; // CAMERA: lens over the floor; 2.2
   const char *title;      // BROADCAST: shown beside the score, such as "EMC  INF"; NULL: none. Copied.
 } vs_render_def;

@@ -5,6 +5,7 @@
 #define VSSS_RIG_H
 
 #include "vsss/frame_stream.h"
+#include "vsss/mark.h"
 #include "vsss/referee.h"
 #include "vsss/sim.h"
 #include "vsss/world.h"
@@ -21,7 +22,8 @@ typedef struct vs_rig_def {
   uint64_t seed;
   int width_px, height_px;
   double camera_height_m;
-  int tag_id[VS_TEAM_SIZE];
+  vs_mark own, their;       // what the teams wear: VS_MARK_APRIL, VS_MARK_PATCH
+  int tag_id[VS_TEAM_SIZE]; // AprilTags of the own team; ArUco marks are the league's
   uint8_t radio_id[VS_TEAM_SIZE];
   const char *folder;  // where camera, radio and calib.ini are put; made if it is missing
   bool lcm;            // VSSS_TRUTH and VSSS_REFEREE

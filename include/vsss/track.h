@@ -19,12 +19,14 @@ extern "C" {
 typedef struct vs_track_def {
   vs_team team;       // ours: the robots with tags
   bool attack_plus_x; // ours attacks +x of the calibration's frame. The world is given in the absolute frame (world.h)
-  int tag_id[VS_TEAM_SIZE];         // of own robot 0, 1, 2; -1: not on the field
-  double tag_yaw_rad[VS_TEAM_SIZE]; // from the robot's front to the pattern's top edge, counter-clockwise
-  double tag_height_m;              // VS_ROBOT_HEIGHT_M
-  double patch_height_m;            // of the adversaries: VS_ROBOT_HEIGHT_M
-  double ball_height_m;             // of the point the blob's centre shows: VS_BALL_RADIUS_M
-  double margin_m;                  // things further outside the field are not on it: 0.10
+  vs_mark own, their; // what the teams wear: as in vs_detector_def
+  int tag_id[VS_TEAM_SIZE];             // AprilTag of own robot 0, 1, 2; -1: not on the field
+  int aruco_id[VS_TEAMS][VS_TEAM_SIZE]; // ArUco mark of robot 0, 1, 2: vs_aruco_league_id
+  double tag_yaw_rad[VS_TEAM_SIZE];     // from the robot's front to the pattern's top edge, counter-clockwise
+  double tag_height_m;                  // VS_ROBOT_HEIGHT_M
+  double patch_height_m;                // of the adversaries: VS_ROBOT_HEIGHT_M
+  double ball_height_m;                 // of the point the blob's centre shows: VS_BALL_RADIUS_M
+  double margin_m;                      // things further outside the field are not on it: 0.10
   double robot_acceleration_mps2, ball_acceleration_mps2, turn_acceleration_radps2; // deviations of the model
   double position_noise_m, ball_noise_m, patch_noise_m, heading_noise_rad;          // deviations of a measurement
 } vs_track_def;
@@ -46,7 +48,8 @@ typedef struct vs_track_stats {
   uint64_t late;                                            // frames not newer than the one before: ignored
 } vs_track_stats;
 
-// Plain data: a copy is a snapshot. robot[VS_OWN] by tag, robot[VS_ADVERSARY] by slot.
+// Plain data: a copy is a snapshot. robot[VS_OWN] by tag; robot[VS_ADVERSARY] by mark, too, where they wear one, then with
+// its heading, else by slot.
 typedef struct vs_tracker {
   vs_track_def def;
   vs_object robot[VS_TEAMS][VS_TEAM_SIZE];

@@ -12,6 +12,7 @@
 #include "vsss/clock.h"
 #include "vsss/detect.h"
 #include "vsss/field.h"
+#include "vsss/frame_stream.h"
 #include "vsss/image.h"
 #include "vsss/tag.h"
 
@@ -69,9 +70,12 @@ static vs_status print_tags(const request *r, vs_error *err) {
     p = *end ? end + 1 : end;
   }
   if (!r->out) return vs_fail(err, VS_USAGE, "--print-tags needs --out FILE.pdf or .png");
-  vs_status s = vs_tag_sheet(r->out, r->family, ids, count, 1e-3 * r->paper_mm, err);
+  double paper_m = r->paper_mm > 0                   ? 1e-3 * r->paper_mm
+                   : strcmp(r->family, VS_TAG_ARUCO) ? VS_TAG_PAPER_M
+                                                     : VS_ARUCO_SIDE_M;
+  vs_status s = vs_tag_sheet(r->out, r->family, ids, count, paper_m, err);
   if (s == VS_OK)
-    printf("%s: %d tags of %g mm, on A4. Print at 100 %% and measure the 100 mm bar.\n", r->out, count, r->paper_mm);
+    printf("%s: %d tags of %g mm, on A4. Print at 100 %% and measure the 100 mm bar.\n", r->out, count, 1000 * paper_m);
   return s;
 }
 
@@ -242,9 +246,8 @@ static vs_status watch_marks(const request *r, const vs_calib *c, vs_camera *cam
     if ((s = vs_tag_detect(detector, &frame, tag, VS_MAX_TAGS, &count, err)) != VS_OK) return s;
     for (int i = 0; i < r->at.count; i++)
       for (int j = 0; j < count; j++) {
-        double x, y;
-        if (tag[j].id != marks[i].id ||
-            !vs_calib_to_field(c, tag[j].centre_px[0], tag[j].centre_px[1], 1e-3 * r->tag_height_mm, &x, &y))
+        double x, y, theta;
+        if (tag[j].id != marks[i].id || !vs_calib_square(c, tag[j].corner_px, 1e-3 * r->tag_height_mm, &x, &y, &theta))
           continue;
         marks[i].sum_x += x, marks[i].sum_y += y, marks[i].seen++;
       }
@@ -297,9 +300,9 @@ static vs_status act(const request *r, vs_error *err) {
 }
 
 int cmd_calibrate(int argc, char **argv) {
+  vs_camera_register(vs_frame_stream_camera());
   request r = {.family = VS_TAG_FAMILY,
                .square_mm = 25,
-               .paper_mm = 1000 * VS_TAG_PAPER_M,
                .tolerance_mm = 5,
                .tag_height_mm = 1000 * VS_ROBOT_HEIGHT_M,
                .pictures = 20};
@@ -320,7 +323,7 @@ int cmd_calibrate(int argc, char **argv) {
       {"pictures", VS_FLAG_INT, &r.pictures, "N", "pictures of the board or of the tags", 1, 200},
       {"print-tags", VS_FLAG_TEXT, &r.print_tags, "IDS", "write a sheet of tags such as 0,1,2 to --out", 0, 0},
       {"family", VS_FLAG_TEXT, &r.family, "NAME", "tag family", 0, 0},
-      {"paper-mm", VS_FLAG_REAL, &r.paper_mm, "MM", "side of a printed tag", 10, 186},
+      {"paper-mm", VS_FLAG_REAL, &r.paper_mm, "MM", "side of a printed tag; 0: 78, of aruco 70", 0, 186},
       {NULL, VS_FLAG_SWITCH, NULL, NULL, NULL, 0, 0}};
   bool help;
   vs_error err;
@@ -333,7 +336,8 @@ int cmd_calibrate(int argc, char **argv) {
       "  vsss calibrate --camera /dev/video0 --snapshot field.png\n"
       "  vsss calibrate --points points.txt --calib lens.ini --out deploy/calibration/venue.ini\n"
       "  vsss calibrate --check --calib deploy/calibration/venue.ini --camera /dev/video0 --at 0=0.375,0.4\n"
-      "Tags for the robots' caps: vsss calibrate --print-tags 0,1,2 --out tags.pdf",
+      "Tags for the robots' caps: vsss calibrate --print-tags 0,1,2 --out tags.pdf\n"
+      "The marks of LARC 2026: vsss calibrate --print-tags 256,272,273,955,771,939 --family aruco --out marks.pdf",
       flags, NULL, &help, &err);
   if (s == VS_OK && help) return 0;
   if (s == VS_OK) s = act(&r, &err);

@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "vsss/camera.h"
 #include "vsss/detect.h"
+#include "vsss/frame_stream.h"
 #include "vsss/image.h"
 #include "vsss/tag.h"
 
@@ -122,6 +123,7 @@ static vs_status look(const char *source, const vs_tag_def *def, bool colours, b
 }
 
 int cmd_detect(int argc, char **argv) {
+  vs_camera_register(vs_frame_stream_camera());
   vs_tag_def def = vs_tag_def_photo();
   bool json = false, field = false, colours = false, help;
   const char *drawing = NULL;

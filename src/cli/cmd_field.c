@@ -13,7 +13,7 @@
 #include "world_csv.h"
 
 typedef struct options {
-  const char *camera, *radio, *policy, *team, *attack, *calib, *config, *lcm, *stats, *record;
+  const char *camera, *radio, *policy, *team, *attack, *calib, *config, *lcm, *stats, *record, *own_tags, *their_tags;
   double seconds;
   int seed, rt;
   bool no_lcm, help;
@@ -34,6 +34,10 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
       {"team", VS_FLAG_TEXT, &o->team, "TEAM", "ours: blue or yellow", 0, 0},
       {"attack", VS_FLAG_TEXT, &o->attack, "+x|-x", "towards which end of the calibration's frame we play", 0, 0},
       {"calib", VS_FLAG_TEXT, &o->calib, "FILE", "calibration of the camera ('vsss calibrate' makes it)", 0, 0},
+      {"own-tags", VS_FLAG_TEXT, &o->own_tags, "KIND", "what our robots wear: april or aruco; default: field.ini's", 0,
+       0},
+      {"their-tags", VS_FLAG_TEXT, &o->their_tags, "KIND", "what theirs wear: patch or aruco; default: field.ini's", 0,
+       0},
       {"config", VS_FLAG_TEXT, &o->config, "FILE", "instead of deploy/config/field.ini", 0, 0},
       {"seconds", VS_FLAG_REAL, &o->seconds, "S", "then stop; 0: until Ctrl-C or the recording's end", 0, 86400},
       {"seed", VS_FLAG_INT, &o->seed, "N", "of a policy that draws", 0, 2147483647},
@@ -63,6 +67,11 @@ static vs_status fill(const options *o, vs_field_config *config, vs_error *err) 
   if (o->policy) def->policy = o->policy;
   if (o->team) s = vs_cli_team("--team", o->team, &def->team, err);
   if (s != VS_OK) return s;
+  vs_mark own = def->detector.own, their = def->detector.their;
+  if (o->own_tags) s = vs_mark_parse("--own-tags", o->own_tags, false, &own, err);
+  if (s == VS_OK && o->their_tags) s = vs_mark_parse("--their-tags", o->their_tags, true, &their, err);
+  if (s != VS_OK) return s;
+  vs_vision_marks(&def->detector, &def->tracker, own, their);
   const char *attack = o->attack ? o->attack : *config->attack ? config->attack : def->team == VS_BLUE ? "+x" : "-x";
   if (strcmp(attack, "+x") && strcmp(attack, "-x"))
     return vs_fail(err, VS_USAGE, "--attack %s: expected +x or -x", attack);

@@ -8,7 +8,7 @@
 #include "world_csv.h"
 
 typedef struct options {
-  const char *opponent, *team, *folder, *rules, *drive, *truth, *lcm;
+  const char *opponent, *team, *folder, *rules, *drive, *truth, *lcm, *own_tags, *their_tags;
   double seconds;
   int matches, seed, width, height, rt;
   bool no_lcm, help;
@@ -27,6 +27,8 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
                  .team = "blue",
                  .rules = "paper",
                  .drive = "contact",
+                 .own_tags = "april",
+                 .their_tags = "patch",
                  .seconds = 0,
                  .seed = 1,
                  .width = 640,
@@ -41,6 +43,8 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
       {"seed", VS_FLAG_INT, &o->seed, "N", "of placements and opponents", 0, 2147483647},
       {"width", VS_FLAG_INT, &o->width, "PX", "of the camera's pictures", 64, 3840},
       {"height", VS_FLAG_INT, &o->height, "PX", "of the camera's pictures", 64, 2160},
+      {"own-tags", VS_FLAG_TEXT, &o->own_tags, "KIND", "what the own team wears: april or aruco", 0, 0},
+      {"their-tags", VS_FLAG_TEXT, &o->their_tags, "KIND", "what the other team wears: patch or aruco", 0, 0},
       {"dir", VS_FLAG_TEXT, &o->folder, "DIR", "where camera, radio and calib.ini are put", 0, 0},
       {"truth", VS_FLAG_TEXT, &o->truth, "FILE", "write the true world of every picture as CSV", 0, 0},
       {"rt", VS_FLAG_INT, &o->rt, "PRIO", "real-time priority, such as 40, and locked memory; 0: none", 0, 99},
@@ -62,6 +66,8 @@ static vs_status fill(const options *o, const char *folder, vs_rig_def *def, vs_
   def->lcm_url = o->lcm;
   vs_rules rules;
   vs_status s = vs_cli_team("--team", o->team, &def->team, err);
+  if (s == VS_OK) s = vs_mark_parse("--own-tags", o->own_tags, false, &def->own, err);
+  if (s == VS_OK) s = vs_mark_parse("--their-tags", o->their_tags, true, &def->their, err);
   if (s == VS_OK) s = vs_rules_parse(o->rules, &rules, err);
   if (s != VS_OK) return s;
   def->referee = vs_referee_def_default(rules);
@@ -73,8 +79,11 @@ static void print_paths(const vs_rig *rig, const vs_rig_def *def, const char *no
   printf("camera  rig:%s  %dx%d, 30 pictures a second\n", vs_rig_camera_path(rig), def->width_px, def->height_px);
   printf("radio   %s\n", vs_rig_radio_path(rig));
   printf("calib   %s\n", vs_rig_calib_path(rig));
-  printf("play    vsss field --team %s --camera rig:%s --radio %s --calib %s\n", vs_team_name(def->team),
+  printf("play    vsss field --team %s --camera rig:%s --radio %s --calib %s", vs_team_name(def->team),
          vs_rig_camera_path(rig), vs_rig_radio_path(rig), vs_rig_calib_path(rig));
+  if (def->own != VS_MARK_APRIL) printf(" --own-tags %s", vs_mark_name(def->own));
+  if (def->their != VS_MARK_PATCH) printf(" --their-tags %s", vs_mark_name(def->their));
+  printf("\n");
   printf("%swaiting for the camera to be opened\n", note);
   fflush(stdout);
 }

@@ -7,7 +7,7 @@
 #include "vsss/paths.h"
 #include "vsss/vision_config.h"
 
-enum { ROWS = 80, OWN_ROWS = 11 };
+enum { ROWS = 120, OWN_ROWS = 11 };
 
 static vs_status load(const char *path, vs_field_config *c, vs_error *err) {
   vs_field_def *d = &c->def;
@@ -24,10 +24,12 @@ static vs_status load(const char *path, vs_field_config *c, vs_error *err) {
       {"radio.robot2_id", VS_CONFIG_INT, &c->radio_id[2], 0, 0, 255, "of robot 2"},
       {"lcm.image_hz", VS_CONFIG_REAL, &d->image_hz, 0, 0, 5, "pictures a second on VSSS_IMAGE; 0: none"},
   };
-  int n =
-      vs_vision_schema(&d->detector, &d->tracker, &d->camera_def, c->tag_family, rows + OWN_ROWS, ROWS - OWN_ROWS - 1);
+  int n = vs_vision_schema(&d->detector, &d->tracker, &d->camera_def, &c->vision, rows + OWN_ROWS, ROWS - OWN_ROWS - 1);
   rows[OWN_ROWS + n].name = NULL;
-  return vs_config_load(path, rows, err);
+  vs_status s = vs_config_load(path, rows, err);
+  if (s == VS_OK && vs_vision_take(&c->vision, &d->detector, &d->tracker, err) != VS_OK)
+    return vs_fail_prefix(err, "%s", path);
+  return s;
 }
 
 vs_status vs_field_config_load(const char *path, vs_field_config *c, vs_error *err) {

@@ -3,10 +3,12 @@
 #define VSSS_CLI_FIELD_CONFIG_H
 
 #include "vsss/field_loop.h"
+#include "vsss/vision_config.h"
 
 typedef struct vs_field_config {
   vs_field_def def; // its texts point into this struct
-  char policy[256], radio[256], team[16], attack[8], tag_family[32];
+  char policy[256], radio[256], team[16], attack[8];
+  vs_vision_words vision;
   int radio_id[VS_TEAM_SIZE];
 } vs_field_config;
 

@@ -69,18 +69,19 @@ static void colour_cap(double u, double v, vs_team team, int index, vs_view view
   memcpy(rgb, seam ? dark : colour, 3);
 }
 
-void vs_paint_cap(uint8_t *rgb, int size, vs_team team, int index, vs_view view, const uint8_t *picture, int cap_px,
-                  double cap_size_m) {
+void vs_paint_cap(uint8_t *rgb, int size, vs_team team, int index, vs_view view, const vs_cap *cap) {
   for (int row = 0; row < size; row++)
     for (int column = 0; column < size; column++, rgb += 3) {
       double u = (column + 0.5) / size - 0.5, v = 0.5 - (row + 0.5) / size; // of the cap's width; u forward, v left
-      if (!picture) {
+      if (!cap->rgb) {
         colour_cap(u, v, team, index, view, rgb);
         continue;
       }
-      int px = (int)floor((0.5 - v * VS_ROBOT_SIZE_M / cap_size_m) * cap_px);
-      int py = (int)floor((0.5 - u * VS_ROBOT_SIZE_M / cap_size_m) * cap_px);
-      bool printed = px >= 0 && px < cap_px && py >= 0 && py < cap_px;
-      memset(rgb, printed ? picture[py * cap_px + px] : 255, 3);
+      int px = (int)floor((0.5 - v * VS_ROBOT_SIZE_M / cap->size_m) * cap->px);
+      int py = (int)floor((0.5 - u * VS_ROBOT_SIZE_M / cap->size_m) * cap->px);
+      if (px >= 0 && px < cap->px && py >= 0 && py < cap->px)
+        memcpy(rgb, cap->rgb + 3 * (py * cap->px + px), 3);
+      else
+        memset(rgb, 255, 3);
     }
 }

@@ -10,9 +10,7 @@
 void vs_paint_floor(uint8_t *rgb, int width, int height, double half_x_m, double half_y_m);
 
 // The texture of a cap of VS_ROBOT_SIZE_M: column 0 at the robot's back, top row at its left, as MuJoCo lays a texture on
-// a plane. picture: NULL for colours, else cap_px x cap_px grey printed cap_size_m wide in the middle of a white cap, its
-// top row to the robot's front.
-void vs_paint_cap(uint8_t *rgb, int size, vs_team team, int index, vs_view view, const uint8_t *picture, int cap_px,
-                  double cap_size_m);
+// a plane. cap->rgb NULL: colours.
+void vs_paint_cap(uint8_t *rgb, int size, vs_team team, int index, vs_view view, const vs_cap *cap);
 
 #endif

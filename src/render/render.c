@@ -48,11 +48,12 @@ static vs_status check(const vs_render_def *def, vs_error *err) {
                    def->height_px);
   if (!(def->camera_height_m >= 1.0 && def->camera_height_m <= 5.0))
     return vs_fail(err, VS_USAGE, "camera height %g m: allowed are 1 to 5", def->camera_height_m);
-  for (int i = 0; i < BALL_SLOT; i++)
-    if (def->cap[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE] &&
-        (def->cap_px < 1 || !(def->cap_size_m > 0.0 && def->cap_size_m <= VS_ROBOT_SIZE_M)))
-      return vs_fail(err, VS_USAGE, "cap picture of %d pixels and %g m: must fit the %g m cap", def->cap_px,
-                     def->cap_size_m, VS_ROBOT_SIZE_M);
+  for (int i = 0; i < BALL_SLOT; i++) {
+    const vs_cap *cap = &def->cap[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+    if (cap->rgb && (cap->px < 1 || !(cap->size_m > 0.0 && cap->size_m <= VS_ROBOT_SIZE_M)))
+      return vs_fail(err, VS_USAGE, "cap picture of %d pixels and %g m: must fit the %g m cap", cap->px, cap->size_m,
+                     VS_ROBOT_SIZE_M);
+  }
   return VS_OK;
 }
 
@@ -92,8 +93,7 @@ static vs_status load_model(vs_render *r, vs_error *err) {
     if (!(rgb = texture(r->model, name, &width, &height)) || width != height)
       return vs_fail(err, VS_FAIL, "%s: no square texture '%s'", path, name);
     int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE;
-    vs_paint_cap(rgb, width, (vs_team)team, index, r->def.view, r->def.cap[team][index], r->def.cap_px,
-                 r->def.cap_size_m);
+    vs_paint_cap(rgb, width, (vs_team)team, index, r->def.view, &r->def.cap[team][index]);
   }
   return VS_OK;
 }

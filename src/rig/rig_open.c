@@ -10,7 +10,6 @@
 #include "rig_internal.h"
 #include "vsss/calib.h"
 #include "vsss/clock.h"
-#include "vsss/tag.h"
 
 vs_rig_def vs_rig_def_default(const vs_model *model) {
   return (vs_rig_def){.model = model,
@@ -21,6 +20,8 @@ vs_rig_def vs_rig_def_default(const vs_model *model) {
                       .width_px = 640,
                       .height_px = 480,
                       .camera_height_m = 2.2,
+                      .own = VS_MARK_APRIL,
+                      .their = VS_MARK_PATCH,
                       .tag_id = {0, 1, 2},
                       .radio_id = {0, 1, 2},
                       .lcm = true};
@@ -39,17 +40,16 @@ static vs_status open_match(vs_rig *r, vs_error *err) {
 
 static vs_status open_render(vs_rig *r, vs_error *err) {
   vs_render_def def = vs_render_def_default(VS_VIEW_CAMERA);
-  uint8_t cap[VS_TEAM_SIZE][VS_TAG_MAX_CELLS * VS_TAG_MAX_CELLS];
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
-    vs_tag_pattern pattern;
-    vs_status s = vs_tag_pattern_of(VS_TAG_FAMILY, r->def.tag_id[i], &pattern, err);
+  vs_mark_picture cap[VS_TEAMS][VS_TEAM_SIZE];
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
+    int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE;
+    bool own = team == (int)r->def.team;
+    vs_mark mark = own ? r->def.own : r->def.their;
+    int id = mark == VS_MARK_ARUCO ? vs_aruco_league_id[team][index] : r->def.tag_id[index];
+    vs_status s = vs_mark_paint(mark, (vs_team)team, id, &cap[team][index], err);
     if (s != VS_OK) return s;
-    for (int k = 0; k < pattern.cells * pattern.cells; k++)
-      cap[i][k] = pattern.cell[k / pattern.cells][k % pattern.cells];
-    def.cap[r->def.team][i] = cap[i];
-    def.cap_px = pattern.cells;
+    def.cap[team][index] = (vs_cap){cap[team][index].rgb, cap[team][index].px, cap[team][index].size_m};
   }
-  def.cap_size_m = VS_TAG_PAPER_M;
   def.width_px = r->def.width_px;
   def.height_px = r->def.height_px;
   def.camera_height_m = r->def.camera_height_m;

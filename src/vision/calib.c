@@ -83,6 +83,20 @@ bool vs_calib_to_pixel(const vs_calib *c, double x_m, double y_m, double z_m, do
   return true;
 }
 
+bool vs_calib_square(const vs_calib *c, const double corner_px[4][2], double h_m, double *x_m, double *y_m,
+                     double *theta_rad) {
+  double x[4], y[4];
+  for (int i = 0; i < 4; i++)
+    if (!vs_calib_to_field(c, corner_px[i][0], corner_px[i][1], h_m, &x[i], &y[i])) return false;
+  *x_m = 0.25 * (x[0] + x[1] + x[2] + x[3]);
+  *y_m = 0.25 * (y[0] + y[1] + y[2] + y[3]);
+  // Both pairs of sides count: the top lies ahead of the bottom, and the right a quarter turn clockwise of that.
+  double up_x = x[3] + x[2] - x[0] - x[1], up_y = y[3] + y[2] - y[0] - y[1];
+  double right_x = x[1] + x[2] - x[0] - x[3], right_y = y[1] + y[2] - y[0] - y[3];
+  *theta_rad = atan2(up_y + right_x, up_x - right_y);
+  return true;
+}
+
 double vs_calib_px_per_m(const vs_calib *c, double h_m) {
   // The root of the area of a small square: the same however the camera is turned.
   const double half = 0.01;

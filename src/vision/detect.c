@@ -30,6 +30,8 @@ vs_tag_def vs_tag_def_photo(void) {
 
 vs_detector_def vs_detector_def_default(void) {
   return (vs_detector_def){.tag = vs_tag_def_field(),
+                           .own = VS_MARK_APRIL,
+                           .their = VS_MARK_PATCH,
                            .adversary = VS_YELLOW,
                            .ball = {5, 40, 0.5, 0.3},
                            .team = {[VS_BLUE] = {195, 260, 0.3, 0.3}, [VS_YELLOW] = {46, 75, 0.45, 0.35}},
@@ -39,10 +41,10 @@ vs_detector_def vs_detector_def_default(void) {
 
 struct vs_detector {
   vs_detector_def def;
-  vs_tag_detector *tags;
+  vs_tag_detector *april, *aruco; // NULL: nobody wears them
   vs_blob_finder *blobs;
-  double tag_side_px; // of the border; 0: any
-  double paper_ratio; // paper over border
+  double side_px[VS_MARKS];     // expected of the square whose corners are seen; 0: any
+  double paper_ratio[VS_MARKS]; // of what is printed to it
   vs_blob_gate ball, adversary;
   int step; // of the colour grid
   uint8_t table[VS_COLOUR_TABLE];
@@ -54,10 +56,8 @@ static vs_blob_gate gate_of(uint8_t bit, double area_px, int most) {
   return (vs_blob_gate){bit, 0.0, 12.0, 1e4, 1, 2.2};
 }
 
-static void set_sizes(vs_detector *d, const vs_tag_pattern *pattern) {
+static void set_sizes(vs_detector *d) {
   double scale = d->def.px_per_m;
-  d->paper_ratio = (double)pattern->cells / pattern->border_cells;
-  d->tag_side_px = scale * d->def.tag_paper_m / d->paper_ratio;
   double radius_px = scale * VS_BALL_RADIUS_M, patch_px = scale * d->def.patch_m;
   d->ball = gate_of(BALL, M_PI * radius_px * radius_px, 1);
   d->ball.max_px *= 1.4; // a fast ball is smeared over more
@@ -66,35 +66,55 @@ static void set_sizes(vs_detector *d, const vs_tag_pattern *pattern) {
   d->step = (int)fmin(fmax(smallest_px / 4.0, 1.0), 4.0);
 }
 
+static bool worn(const vs_detector *d, vs_mark mark) { return d->def.own == mark || d->def.their == mark; }
+
+static vs_status open_marks(vs_detector *d, vs_error *err) {
+  vs_tag_def tag = d->def.tag;
+  vs_tag_pattern pattern;
+  vs_status s = VS_OK;
+  if (worn(d, VS_MARK_APRIL)) {
+    s = vs_tag_pattern_of(tag.family, 0, &pattern, err);
+    if (s == VS_OK) s = vs_tag_detector_new(&tag, &d->april, err);
+    if (s != VS_OK) return s;
+    d->paper_ratio[VS_MARK_APRIL] = (double)pattern.cells / pattern.border_cells;
+    d->side_px[VS_MARK_APRIL] = d->def.px_per_m * d->def.tag_paper_m / d->paper_ratio[VS_MARK_APRIL];
+  }
+  if (worn(d, VS_MARK_ARUCO)) {
+    tag.family = VS_TAG_ARUCO;
+    tag.side_px = d->side_px[VS_MARK_ARUCO] = d->def.px_per_m * VS_ARUCO_SIDE_M;
+    d->paper_ratio[VS_MARK_ARUCO] = (VS_ARUCO_SIDE_M + 2 * VS_ARUCO_MARGIN_M) / VS_ARUCO_SIDE_M;
+    s = vs_tag_detector_new(&tag, &d->aruco, err);
+  }
+  return s;
+}
+
 vs_status vs_detector_new(const vs_detector_def *def, vs_detector **out, vs_error *err) {
   *out = NULL;
   if (!(def->px_per_m >= 0 && def->px_per_m < 1e5) || !(def->patch_m > 0) || !(def->tag_paper_m > 0))
     return vs_fail(err, VS_USAGE, "detector: px_per_m %g, patch_m %g, tag_paper_m %g must be positive", def->px_per_m,
                    def->patch_m, def->tag_paper_m);
-  vs_tag_pattern pattern;
-  vs_status s = vs_tag_pattern_of(def->tag.family, 0, &pattern, err);
-  if (s != VS_OK) return s;
   vs_detector *d = calloc(1, sizeof *d);
   if (!d || !(d->blobs = vs_blob_finder_new())) {
     free(d);
     return vs_fail(err, VS_FAIL, "out of memory");
   }
   d->def = *def;
-  s = vs_tag_detector_new(&def->tag, &d->tags, err);
+  vs_status s = open_marks(d, err);
   if (s != VS_OK) {
     vs_detector_free(d);
     return s;
   }
   vs_colour_table_add(d->table, &def->ball, BALL);
   vs_colour_table_add(d->table, &def->team[def->adversary], ADVERSARY);
-  set_sizes(d, &pattern);
+  set_sizes(d);
   *out = d;
   return VS_OK;
 }
 
 void vs_detector_free(vs_detector *detector) {
   if (!detector) return;
-  vs_tag_detector_free(detector->tags);
+  vs_tag_detector_free(detector->april);
+  vs_tag_detector_free(detector->aruco);
   vs_blob_finder_free(detector->blobs);
   free(detector);
 }
@@ -112,8 +132,8 @@ static double side_px(const vs_tag *tag) {
 static int keep_sizes(const vs_detector *d, vs_tag *tag, int count) {
   int kept = 0;
   for (int i = 0; i < count; i++) {
-    double side = side_px(&tag[i]);
-    if (d->tag_side_px > 0 && fabs(side - d->tag_side_px) > 0.25 * d->tag_side_px) continue;
+    double side = side_px(&tag[i]), expected = d->side_px[tag[i].kind];
+    if (expected > 0 && fabs(side - expected) > 0.25 * expected) continue;
     tag[kept++] = tag[i];
   }
   return kept;
@@ -122,7 +142,7 @@ static int keep_sizes(const vs_detector *d, vs_tag *tag, int count) {
 static bool on_tag(const vs_detector *d, const vs_detections *seen, const vs_blob *blob) {
   for (int i = 0; i < seen->tags; i++) {
     const vs_tag *t = &seen->tag[i];
-    double reach = 0.5 * side_px(t) * d->paper_ratio;
+    double reach = 0.5 * side_px(t) * d->paper_ratio[t->kind];
     if (hypot(blob->x_px - t->centre_px[0], blob->y_px - t->centre_px[1]) < reach) return true;
   }
   return false;
@@ -136,17 +156,29 @@ static int keep_off_tags(const vs_detector *d, const vs_detections *seen, vs_blo
   return kept;
 }
 
+static vs_status find_marks(const vs_detector *d, const vs_frame *frame, vs_detections *out, vs_error *err) {
+  vs_tag_detector *const finder[] = {d->april, d->aruco};
+  vs_status s = VS_OK;
+  for (size_t i = 0; i < sizeof finder / sizeof *finder && s == VS_OK; i++) {
+    if (!finder[i]) continue;
+    int found = 0;
+    vs_tag *rest = out->tag + out->tags;
+    s = vs_tag_detect(finder[i], frame, rest, VS_MAX_TAGS - out->tags, &found, err);
+    out->tags += keep_sizes(d, rest, found);
+  }
+  return s;
+}
+
 vs_status vs_detect(vs_detector *d, const vs_frame *frame, vs_detections *out, vs_error *err) {
   out->capture_us = frame->capture_us;
   out->seq = frame->seq;
   out->tags = out->balls = out->adversaries = 0;
-  vs_status s = vs_tag_detect(d->tags, frame, out->tag, VS_MAX_TAGS, &out->tags, err);
+  vs_status s = find_marks(d, frame, out, err);
   if (s != VS_OK) return s;
-  out->tags = keep_sizes(d, out->tag, out->tags);
   s = vs_blobs_find(d->blobs, frame, d->table, &d->ball, d->step, out->ball, VS_MAX_BLOBS, &out->balls, err);
-  if (s != VS_OK) return s;
-  s = vs_blobs_find(d->blobs, frame, d->table, &d->adversary, d->step, out->adversary, VS_MAX_BLOBS, &out->adversaries,
-                    err);
+  if (s == VS_OK && d->def.their == VS_MARK_PATCH)
+    s = vs_blobs_find(d->blobs, frame, d->table, &d->adversary, d->step, out->adversary, VS_MAX_BLOBS,
+                      &out->adversaries, err);
   if (s != VS_OK) return s;
   out->balls = keep_off_tags(d, out, out->ball, out->balls);
   out->adversaries = keep_off_tags(d, out, out->adversary, out->adversaries);

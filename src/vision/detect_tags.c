@@ -14,8 +14,14 @@
 #include <apriltag/tagStandard41h12.h>
 #include <apriltag/tagStandard52h13.h>
 
+#include "vision/aruco.h"
 #include "vsss/detect.h"
 #include "vsss/tag.h"
+
+// Below this a picture holds no tag, and libapriltag 3.3 reads and writes beyond its buffers.
+#define LEAST_PX 64
+// Marks smaller than this are looked for in the picture at twice its size: see VS_TAG_ARUCO.
+#define SMALL_MARK_PX 32
 
 typedef struct family {
   const char *name;
@@ -23,7 +29,17 @@ typedef struct family {
   void (*destroy)(apriltag_family_t *);
 } family;
 
+// Marks of ArUco Original as a family of libapriltag's: 5 x 5 bits inside a dark border are the cells of tag25h9, whose
+// order of bits is taken over. The codes are filled in when it is known which ids are looked for.
+static apriltag_family_t *aruco_create(void) {
+  apriltag_family_t *tags = tag25h9_create();
+  tags->ncodes = 0;
+  tags->h = 3;
+  return tags;
+}
+
 static const family families[] = {
+    {VS_TAG_ARUCO, aruco_create, tag25h9_destroy},
     {"tagStandard41h12", tagStandard41h12_create, tagStandard41h12_destroy},
     {"tag36h11", tag36h11_create, tag36h11_destroy},
     {"tag25h9", tag25h9_create, tag25h9_destroy},
@@ -36,8 +52,8 @@ static const family families[] = {
 };
 
 const char *vs_tag_families(void) {
-  return "tagStandard41h12 tag36h11 tag25h9 tag36h10 tag16h5 tagCircle21h7 tagCircle49h12 tagCustom48h12 "
-         "tagStandard52h13";
+  return VS_TAG_ARUCO " tagStandard41h12 tag36h11 tag25h9 tag36h10 tag16h5 tagCircle21h7 tagCircle49h12 tagCustom48h12 "
+                      "tagStandard52h13";
 }
 
 static vs_status find_family(const char *name, const family **out, vs_error *err) {
@@ -48,6 +64,7 @@ static vs_status find_family(const char *name, const family **out, vs_error *err
 
 vs_status vs_tag_pattern_of(const char *name, int id, vs_tag_pattern *out, vs_error *err) {
   const family *f = NULL;
+  if (!strcmp(name, VS_TAG_ARUCO)) return vs_aruco_pattern(id, out, err);
   vs_status s = find_family(name, &f, err);
   if (s != VS_OK) return s;
   apriltag_family_t *tags = f->create();
@@ -69,7 +86,34 @@ struct vs_tag_detector {
   const family *family;
   apriltag_family_t *tags;
   apriltag_detector_t *detector;
+  bool aruco;
+  int ids, id[VS_TAG_MOST_IDS]; // of an ArUco family's codes
+  uint8_t *large;               // the picture at twice its size, where small marks are looked for
+  size_t large_bytes;
 };
+
+// The six of the league, or those that were asked for.
+static vs_status choose_codes(vs_tag_detector *d, vs_error *err) {
+  d->ids = d->def.ids;
+  if (d->ids < 0 || d->ids > VS_TAG_MOST_IDS)
+    return vs_fail(err, VS_USAGE, "%d ids of marks: allowed are 0 to %d", d->ids, VS_TAG_MOST_IDS);
+  memcpy(d->id, d->def.id, sizeof d->id);
+  if (d->ids == 0) {
+    d->ids = VS_TEAMS * VS_TEAM_SIZE;
+    memcpy(d->id, vs_aruco_league_id, sizeof vs_aruco_league_id);
+  }
+  for (int i = 0; i < d->ids; i++) {
+    vs_tag_pattern pattern;
+    vs_status s = vs_aruco_pattern(d->id[i], &pattern, err);
+    if (s != VS_OK) return s;
+    uint64_t code = 0;
+    for (uint32_t bit = 0; bit < d->tags->nbits; bit++)
+      code = code << 1 | (pattern.cell[d->tags->bit_y[bit]][d->tags->bit_x[bit]] != 0);
+    d->tags->codes[i] = code;
+  }
+  d->tags->ncodes = (uint32_t)d->ids;
+  return VS_OK;
+}
 
 vs_status vs_tag_detector_new(const vs_tag_def *def, vs_tag_detector **out, vs_error *err) {
   *out = NULL;
@@ -84,10 +128,16 @@ vs_status vs_tag_detector_new(const vs_tag_def *def, vs_tag_detector **out, vs_e
   if (!d) return vs_fail(err, VS_FAIL, "out of memory");
   d->def = *def;
   d->family = f;
+  d->aruco = f->create == aruco_create;
   d->tags = f->create();
   d->detector = apriltag_detector_create();
+  if (d->aruco && (s = choose_codes(d, err)) != VS_OK) {
+    vs_tag_detector_free(d);
+    return s;
+  }
   d->detector->nthreads = 1; // two are slower, and race (field.md 1.2)
-  d->detector->quad_decimate = (float)def->decimate;
+  // The light margin of an ArUco mark is half a cell: a coarser search does not see it.
+  d->detector->quad_decimate = d->aruco ? 1.0f : (float)def->decimate;
   d->detector->quad_sigma = (float)def->blur_px;
   d->detector->decode_sharpening = def->sharpening;
   d->detector->refine_edges = true;
@@ -107,6 +157,7 @@ void vs_tag_detector_free(vs_tag_detector *detector) {
   if (!detector) return;
   apriltag_detector_destroy(detector->detector);
   detector->family->destroy(detector->tags);
+  free(detector->large);
   free(detector);
 }
 
@@ -116,11 +167,64 @@ static int by_id_then_x(const void *a, const void *b) {
   return (p->centre_px[0] > q->centre_px[0]) - (p->centre_px[0] < q->centre_px[0]);
 }
 
+// Twice the size, between the middles of pixels: (x, y) of the picture becomes (2 x, 2 y).
+static void enlarge(const vs_frame *f, uint8_t *out) {
+  size_t stride = 2 * (size_t)f->width;
+  for (int y = 0; y < f->height; y++) {
+    const uint8_t *row = f->grey + (size_t)y * f->grey_stride;
+    const uint8_t *above = y > 0 ? row - f->grey_stride : row, *below = y + 1 < f->height ? row + f->grey_stride : row;
+    uint8_t *high = out + 2 * (size_t)y * stride, *low = high + stride;
+    for (int x = 0; x < f->width; x++) {
+      int l = x > 0 ? x - 1 : x, r = x + 1 < f->width ? x + 1 : x;
+      int up[3] = {3 * row[l] + above[l], 3 * row[x] + above[x], 3 * row[r] + above[r]};
+      int down[3] = {3 * row[l] + below[l], 3 * row[x] + below[x], 3 * row[r] + below[r]};
+      high[2 * x] = (uint8_t)((up[0] + 3 * up[1] + 8) >> 4);
+      high[2 * x + 1] = (uint8_t)((3 * up[1] + up[2] + 8) >> 4);
+      low[2 * x] = (uint8_t)((down[0] + 3 * down[1] + 8) >> 4);
+      low[2 * x + 1] = (uint8_t)((3 * down[1] + down[2] + 8) >> 4);
+    }
+  }
+}
+
+// How much larger than the frame the picture is that marks are looked for in; where it is, large holds it.
+static vs_status make_large(vs_tag_detector *d, const vs_frame *frame, int *scale, vs_error *err) {
+  *scale = d->aruco && d->def.side_px > 0 && d->def.side_px < SMALL_MARK_PX ? 2 : 1;
+  if (*scale == 1) return VS_OK;
+  size_t bytes = 4 * (size_t)frame->width * frame->height;
+  if (bytes > d->large_bytes) {
+    free(d->large);
+    d->large = malloc(bytes);
+    d->large_bytes = d->large ? bytes : 0;
+  }
+  if (!d->large) return vs_fail(err, VS_FAIL, "out of memory for a picture");
+  enlarge(frame, d->large);
+  return VS_OK;
+}
+
+static void take(const vs_tag_detector *d, const apriltag_detection_t *hit, double scale, vs_tag *tag) {
+  *tag = (vs_tag){.kind = d->aruco ? VS_MARK_ARUCO : VS_MARK_APRIL,
+                  .id = d->aruco ? d->id[hit->id] : hit->id,
+                  .hamming = hit->hamming,
+                  .margin = hit->decision_margin};
+  for (int k = 0; k < 2; k++) {
+    tag->centre_px[k] = hit->c[k] / scale;
+    for (int i = 0; i < 4; i++) tag->corner_px[i][k] = hit->p[i][k] / scale;
+  }
+}
+
 vs_status vs_tag_detect(vs_tag_detector *detector, const vs_frame *frame, vs_tag *out, int capacity, int *count,
                         vs_error *err) {
   *count = 0;
-  image_u8_t image = {
-      .width = frame->width, .height = frame->height, .stride = frame->grey_stride, .buf = (uint8_t *)frame->grey};
+  if (frame->width < LEAST_PX || frame->height < LEAST_PX)
+    return vs_fail(err, VS_USAGE, "a picture of %d x %d pixels: tags are looked for in at least %d x %d", frame->width,
+                   frame->height, LEAST_PX, LEAST_PX);
+  int scale;
+  vs_status s = make_large(detector, frame, &scale, err);
+  if (s != VS_OK) return s;
+  image_u8_t image = {.width = scale * frame->width,
+                      .height = scale * frame->height,
+                      .stride = scale == 2 ? 2 * frame->width : frame->grey_stride,
+                      .buf = scale == 2 ? detector->large : (uint8_t *)frame->grey};
   errno = 0;
   zarray_t *found = apriltag_detector_detect(detector->detector, &image);
   if (!found) return vs_fail(err, VS_FAIL, "libapriltag: %s", errno ? strerror(errno) : "no result");
@@ -128,12 +232,7 @@ vs_status vs_tag_detect(vs_tag_detector *detector, const vs_frame *frame, vs_tag
     apriltag_detection_t *hit;
     zarray_get(found, i, &hit);
     if (hit->hamming > detector->def.max_hamming || hit->decision_margin < detector->def.min_margin) continue;
-    vs_tag *tag = &out[(*count)++];
-    tag->id = hit->id;
-    tag->hamming = hit->hamming;
-    tag->margin = hit->decision_margin;
-    memcpy(tag->centre_px, hit->c, sizeof tag->centre_px);
-    memcpy(tag->corner_px, hit->p, sizeof tag->corner_px);
+    take(detector, hit, scale, &out[(*count)++]);
   }
   apriltag_detections_destroy(found);
   qsort(out, *count, sizeof *out, by_id_then_x);

@@ -8,68 +8,105 @@
 #include <strings.h>
 
 #include "vsss/image.h"
+#include "vsss/mark.h"
 #include "vsss/tag.h"
 
 enum { PAGE_W = 210, PAGE_H = 297, MARGIN = 12, GAP = 10, MOST_TAGS = 64 };
 
-// Where tag i's paper begins, from the page's top left.
+typedef void paint_fn(void *to, double x_mm, double y_mm, double w_mm, double h_mm, const uint8_t rgb[3]);
+
+static const uint8_t black[3] = {0, 0, 0}, white[3] = {255, 255, 255};
+
 typedef struct sheet {
   const char *family;
   int count, columns, rows;
-  double paper_mm;
+  double paper_mm;  // of the pattern
+  double margin_mm; // light paper around it that belongs to the mark; cut along its outer edge
   int id[MOST_TAGS];
   vs_tag_pattern tag[MOST_TAGS];
 } sheet;
 
+// Where tag i's pattern begins, from the page's top left.
 static void place(const sheet *s, int i, double *x_mm, double *y_mm) {
-  *x_mm = MARGIN + (i % s->columns) * (s->paper_mm + GAP);
-  *y_mm = MARGIN + (i / s->columns) * (s->paper_mm + GAP);
+  *x_mm = MARGIN + s->margin_mm + (i % s->columns) * (s->paper_mm + 2 * s->margin_mm + GAP);
+  *y_mm = MARGIN + s->margin_mm + (i / s->columns) * (s->paper_mm + 2 * s->margin_mm + GAP);
 }
 
-// Calls paint for every run of black cells in a row: fewer and seamless rectangles.
-static void for_each_black(const sheet *s, void (*paint)(void *to, double x, double y, double w, double h), void *to) {
-  for (int i = 0; i < s->count; i++) {
-    const vs_tag_pattern *t = &s->tag[i];
-    double x, y, cell = s->paper_mm / t->cells;
-    place(s, i, &x, &y);
-    for (int row = 0; row < t->cells; row++)
-      for (int from = 0; from < t->cells;) {
-        int end = from;
-        while (end < t->cells && !t->cell[row][end]) end++;
-        if (end > from) paint(to, x + from * cell, y + row * cell, (end - from) * cell, cell);
-        from = end + 1;
-      }
+// The team whose mark it is by the league's rules, or -1.
+static int team_of(const sheet *s, int id) {
+  for (int k = 0; k < VS_TEAMS * VS_TEAM_SIZE && !strcmp(s->family, VS_TAG_ARUCO); k++)
+    if (vs_aruco_league_id[k / VS_TEAM_SIZE][k % VS_TEAM_SIZE] == id) return k / VS_TEAM_SIZE;
+  return -1;
+}
+
+// Runs of cells of one kind in a row: fewer rectangles, and no seams between them.
+static void paint_cells(const sheet *s, int i, bool light, const uint8_t rgb[3], paint_fn *paint, void *to) {
+  const vs_tag_pattern *t = &s->tag[i];
+  double x, y, cell = s->paper_mm / t->cells;
+  place(s, i, &x, &y);
+  for (int row = 0; row < t->cells; row++)
+    for (int from = 0; from < t->cells;) {
+      int end = from;
+      while (end < t->cells && (t->cell[row][end] != 0) == light) end++;
+      if (end > from) paint(to, x + from * cell, y + row * cell, (end - from) * cell, cell, rgb);
+      from = end + 1;
+    }
+}
+
+// Paper is white. The league's blue marks are white on blue, its yellow ones yellow on black.
+static void paint_tag(const sheet *s, int i, paint_fn *paint, void *to) {
+  static const uint8_t blue[3] = {24, 72, 232}, yellow[3] = {250, 214, 20};
+  int team = team_of(s, s->id[i]);
+  if (team < 0) {
+    paint_cells(s, i, false, black, paint, to);
+    return;
   }
+  double x, y; // the dark ground whole, the light cells upon it: no seams
+  place(s, i, &x, &y);
+  paint(to, x, y, s->paper_mm, s->paper_mm, team == VS_BLUE ? blue : black);
+  paint_cells(s, i, true, team == VS_BLUE ? white : yellow, paint, to);
 }
 
 static void caption(const sheet *s, int i, char *out, size_t size) {
-  snprintf(out, size, "%s %d, %g mm, this edge to the rear", s->family, s->id[i], s->paper_mm);
+  int team = team_of(s, s->id[i]);
+  snprintf(out, size, "%s %d%s%s, %g mm, this edge to the rear", s->family, s->id[i], team >= 0 ? " " : "",
+           team >= 0 ? vs_team_name((vs_team)team) : "", s->paper_mm);
 }
 
 // PDF counts in points from the bottom left.
 static double pt(double mm) { return mm * 72 / 25.4; }
 
-static void pdf_black(void *to, double x, double y, double w, double h) {
-  fprintf(to, "%.4f %.4f %.4f %.4f re f\n", pt(x), pt(PAGE_H - y - h), pt(w), pt(h));
+static void pdf_rectangle(void *to, double x, double y, double w, double h, const uint8_t rgb[3]) {
+  fprintf(to, "%.3f %.3f %.3f rg %.4f %.4f %.4f %.4f re f\n", rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0, pt(x),
+          pt(PAGE_H - y - h), pt(w), pt(h));
 }
 
 static void pdf_text(FILE *f, double x_mm, double y_mm, const char *text) {
-  fprintf(f, "BT /F 7 Tf %.3f %.3f Td (%s) Tj ET\n", pt(x_mm), pt(PAGE_H - y_mm), text);
+  fprintf(f, "0 g BT /F 7 Tf %.3f %.3f Td (%s) Tj ET\n", pt(x_mm), pt(PAGE_H - y_mm), text);
+}
+
+// The line to cut along, and outside of it an arrow head at the edge that goes to the robot's front.
+static void pdf_outline(FILE *f, const sheet *s, double x, double y) {
+  double side = s->paper_mm + 2 * s->margin_mm, left = x - s->margin_mm, top = y - s->margin_mm;
+  fprintf(f, "0.6 G 0.3 w %.4f %.4f %.4f %.4f re S\n", pt(left), pt(PAGE_H - top - side), pt(side), pt(side));
+  double middle = left + 0.5 * side;
+  fprintf(f, "0.4 g %.4f %.4f m %.4f %.4f l %.4f %.4f l f\n", pt(middle - 2), pt(PAGE_H - top + 1), pt(middle + 2),
+          pt(PAGE_H - top + 1), pt(middle), pt(PAGE_H - top + 4));
+  pdf_text(f, middle + 3, top - 1, "front");
 }
 
 static void pdf_page(FILE *f, const sheet *s) {
-  for_each_black(s, pdf_black, f);
   for (int i = 0; i < s->count; i++) {
     double x, y;
     char text[128];
     place(s, i, &x, &y);
+    paint_tag(s, i, pdf_rectangle, f);
+    pdf_outline(f, s, x, y);
     caption(s, i, text, sizeof text);
-    fprintf(f, "0.6 G 0.3 w %.4f %.4f %.4f %.4f re S\n", pt(x), pt(PAGE_H - y - s->paper_mm), pt(s->paper_mm),
-            pt(s->paper_mm));
-    pdf_text(f, x, y + s->paper_mm + 4, text);
+    pdf_text(f, x - s->margin_mm, y + s->paper_mm + s->margin_mm + 4, text);
   }
-  pdf_black(f, MARGIN, PAGE_H - 9, 100, 1);
-  pdf_text(f, MARGIN + 102, PAGE_H - 8, "100 mm: measure it after printing");
+  pdf_rectangle(f, MARGIN, PAGE_H - 9, 100, 1, black);
+  pdf_text(f, MARGIN + 102, PAGE_H - 8, "100 mm: measure it after printing, at 100 %; cut along the grey lines");
 }
 
 static bool write_pdf(FILE *f, const sheet *s) {
@@ -103,19 +140,21 @@ static bool write_pdf(FILE *f, const sheet *s) {
 }
 
 enum { DOTS_W = 2480, DOTS_H = 3508 }; // A4 at 300 dots per inch
-static void png_black(void *to, double x, double y, double w, double h) {
+static void png_rectangle(void *to, double x, double y, double w, double h, const uint8_t rgb[3]) {
   const double dots = DOTS_W / (double)PAGE_W;
-  for (long row = lround(y * dots); row < lround((y + h) * dots) && row < DOTS_H; row++)
-    memset((uint8_t *)to + 3 * (row * DOTS_W + lround(x * dots)), 0,
-           3 * (size_t)(lround((x + w) * dots) - lround(x * dots)));
+  for (long row = lround(y * dots); row < lround((y + h) * dots) && row < DOTS_H; row++) {
+    uint8_t *bgr = (uint8_t *)to + 3 * (row * DOTS_W + lround(x * dots));
+    for (long n = lround((x + w) * dots) - lround(x * dots); n > 0; n--, bgr += 3)
+      bgr[0] = rgb[2], bgr[1] = rgb[1], bgr[2] = rgb[0];
+  }
 }
 
 static vs_status write_png(const char *path, const sheet *s, vs_error *err) {
   uint8_t *bgr = malloc(3 * (size_t)DOTS_W * DOTS_H);
   if (!bgr) return vs_fail(err, VS_FAIL, "%s: out of memory", path);
   memset(bgr, 255, 3 * (size_t)DOTS_W * DOTS_H);
-  for_each_black(s, png_black, bgr);
-  png_black(bgr, MARGIN, PAGE_H - 9, 100, 1);
+  for (int i = 0; i < s->count; i++) paint_tag(s, i, png_rectangle, bgr);
+  png_rectangle(bgr, MARGIN, PAGE_H - 9, 100, 1, black);
   vs_status status = vs_image_save(path, bgr, 3 * DOTS_W, DOTS_W, DOTS_H, err);
   free(bgr);
   return status;
@@ -134,8 +173,10 @@ static vs_status lay_out(sheet *s, const char *family, const int *ids, int count
   s->paper_mm = 1000 * paper_m;
   if (!(s->paper_mm >= 10 && s->paper_mm <= PAGE_W - 2 * MARGIN))
     return vs_fail(err, VS_USAGE, "tags of %g mm: allowed are 10 to %d", s->paper_mm, PAGE_W - 2 * MARGIN);
-  s->columns = (int)((PAGE_W - 2 * MARGIN + GAP) / (s->paper_mm + GAP));
-  s->rows = (int)((PAGE_H - 2 * MARGIN - 4) / (s->paper_mm + GAP));
+  if (!strcmp(family, VS_TAG_ARUCO)) s->margin_mm = s->paper_mm * VS_ARUCO_MARGIN_M / VS_ARUCO_SIDE_M;
+  s->columns = (int)((PAGE_W - 2 * MARGIN + GAP) / (s->paper_mm + 2 * s->margin_mm + GAP));
+  s->rows = (int)((PAGE_H - MARGIN - 16 + GAP) / (s->paper_mm + 2 * s->margin_mm + GAP)); // 16: a caption, the bar
+  if (s->columns == 0) s->columns = 1;
   int most = s->columns * s->rows < MOST_TAGS ? s->columns * s->rows : MOST_TAGS;
   if (count < 1 || count > most)
     return vs_fail(err, VS_USAGE, "%d tags of %g mm: a sheet holds 1 to %d", count, s->paper_mm, most);

@@ -15,7 +15,10 @@
 vs_track_def vs_track_def_default(void) {
   return (vs_track_def){.team = VS_BLUE,
                         .attack_plus_x = true,
+                        .own = VS_MARK_APRIL,
+                        .their = VS_MARK_PATCH,
                         .tag_id = {0, 1, 2},
+                        .aruco_id = {{256, 272, 273}, {955, 771, 939}}, // vs_aruco_league_id
                         .tag_height_m = VS_ROBOT_HEIGHT_M,
                         .patch_height_m = VS_ROBOT_HEIGHT_M,
                         .ball_height_m = VS_BALL_RADIUS_M,
@@ -92,31 +95,31 @@ static bool on_field(const vs_track_def *def, double x_m, double y_m) {
   return fabs(x_m) <= VS_FIELD_HALF_LENGTH_M + def->margin_m && fabs(y_m) <= VS_FIELD_HALF_WIDTH_M + def->margin_m;
 }
 
-// The four corners on the plane of the caps: their middle is the robot's, their left and right edges show forward.
 static bool sight_of_tag(const vs_track_def *def, const vs_calib *calib, const vs_tag *tag, double yaw_rad, sight *z) {
-  double x[4], y[4];
-  for (int i = 0; i < 4; i++)
-    if (!vs_calib_to_field(calib, tag->corner_px[i][0], tag->corner_px[i][1], def->tag_height_m, &x[i], &y[i]))
-      return false;
-  z->x_m = (x[0] + x[1] + x[2] + x[3]) / 4;
-  z->y_m = (y[0] + y[1] + y[2] + y[3]) / 4;
-  double up_x = x[3] + x[2] - x[0] - x[1], up_y = y[3] + y[2] - y[0] - y[1];
-  double right_x = x[1] + x[2] - x[0] - x[3], right_y = y[1] + y[2] - y[0] - y[3];
-  z->theta_rad = vs_wrap_rad(atan2(up_y + right_x, up_x - right_y) - yaw_rad);
+  if (!vs_calib_square(calib, tag->corner_px, def->tag_height_m, &z->x_m, &z->y_m, &z->theta_rad)) return false;
+  z->theta_rad = vs_wrap_rad(z->theta_rad - yaw_rad);
   z->noise_m = def->position_noise_m;
   z->heading_noise_rad = def->heading_noise_rad;
   return on_field(def, z->x_m, z->y_m);
 }
 
-static void update_own(vs_tracker *t, const vs_calib *calib, const vs_detections *seen, int index) {
-  vs_object *o = &t->robot[VS_OWN][index];
+static bool is_of(const vs_track_def *def, const vs_tag *tag, int side, int index) {
+  vs_mark mark = side == VS_OWN ? def->own : def->their;
+  vs_team team = side == VS_OWN ? def->team : (vs_team)(1 - def->team);
+  return tag->kind == mark && tag->id == (mark == VS_MARK_ARUCO ? def->aruco_id[team][index] : def->tag_id[index]);
+}
+
+// A robot known by its mark.
+static void update_marked(vs_tracker *t, const vs_calib *calib, const vs_detections *seen, int side, int index) {
+  vs_object *o = &t->robot[side][index];
+  double yaw_rad = side == VS_OWN ? t->def.tag_yaw_rad[index] : 0.0;
   const sight *best = NULL;
   sight z[2]; // the best so far and the one in hand
   double best_score = 0;
   for (int i = 0; i < seen->tags; i++) {
     sight *this = best == &z[0] ? &z[1] : &z[0];
-    if (seen->tag[i].id != t->def.tag_id[index]) continue;
-    if (!sight_of_tag(&t->def, calib, &seen->tag[i], t->def.tag_yaw_rad[index], this)) {
+    if (!is_of(&t->def, &seen->tag[i], side, index)) continue;
+    if (!sight_of_tag(&t->def, calib, &seen->tag[i], yaw_rad, this)) {
       t->stats.refused++;
       continue;
     }
@@ -126,7 +129,7 @@ static void update_own(vs_tracker *t, const vs_calib *calib, const vs_detections
   }
   bool taken = best && offer(o, best, seen->capture_us);
   t->stats.refused += best && !taken;
-  t->stats.lost[VS_OWN][index] += !taken;
+  t->stats.lost[side][index] += !taken;
 }
 
 // Blobs on the field, in metres, best first.
@@ -193,6 +196,9 @@ static void update_adversaries(vs_tracker *t, const vs_calib *calib, const vs_de
   for (int s = 0; s < VS_TEAM_SIZE; s++) t->stats.lost[VS_ADVERSARY][s] += !(measured & 1u << s);
 }
 
+// A colour patch shows no heading.
+static bool heading_shown(const vs_track_def *def) { return def->their != VS_MARK_PATCH; }
+
 void vs_track_init(vs_tracker *tracker, const vs_track_def *def) { *tracker = (vs_tracker){.def = *def}; }
 
 void vs_track_restart(vs_tracker *tracker) {
@@ -213,11 +219,13 @@ void vs_track_update(vs_tracker *t, const vs_calib *calib, const vs_detections *
   t->seq = seen->seq;
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     predict(&t->robot[VS_OWN][i], t->time_us, t->def.robot_acceleration_mps2, t->def.turn_acceleration_radps2);
-    predict(&t->robot[VS_ADVERSARY][i], t->time_us, t->def.robot_acceleration_mps2, 0.0);
+    predict(&t->robot[VS_ADVERSARY][i], t->time_us, t->def.robot_acceleration_mps2,
+            heading_shown(&t->def) ? t->def.turn_acceleration_radps2 : 0.0);
   }
   predict(&t->ball, t->time_us, t->def.ball_acceleration_mps2, 0.0);
-  for (int i = 0; i < VS_TEAM_SIZE; i++) update_own(t, calib, seen, i);
-  update_adversaries(t, calib, seen);
+  for (int i = 0; i < VS_TEAM_SIZE; i++) update_marked(t, calib, seen, VS_OWN, i);
+  for (int i = 0; heading_shown(&t->def) && i < VS_TEAM_SIZE; i++) update_marked(t, calib, seen, VS_ADVERSARY, i);
+  if (!heading_shown(&t->def)) update_adversaries(t, calib, seen);
   update_ball(t, calib, seen);
 }
 
@@ -236,11 +244,11 @@ void vs_track_world(const vs_tracker *t, int64_t time_us, vs_world *out) {
   double turn = turned ? -1.0 : 1.0;
   *out = (vs_world){.time_us = time_us, .seq = t->seq};
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
-    vs_robot *own = &out->robot[t->def.team][i];
+    vs_robot *own = &out->robot[t->def.team][i], *other = &out->robot[1 - t->def.team][i];
     robot_at(&t->robot[VS_OWN][i], time_us, turn, own);
     own->pose.theta_rad = vs_wrap_rad(own->pose.theta_rad + (turned ? VS_PI : 0.0));
-    robot_at(&t->robot[VS_ADVERSARY][i], time_us, turn, &out->robot[1 - t->def.team][i]);
-    out->robot[1 - t->def.team][i].pose.theta_rad = 0; // a colour patch shows no heading
+    robot_at(&t->robot[VS_ADVERSARY][i], time_us, turn, other);
+    other->pose.theta_rad = heading_shown(&t->def) ? vs_wrap_rad(other->pose.theta_rad + (turned ? VS_PI : 0.0)) : 0.0;
   }
   vs_robot ball;
   robot_at(&t->ball, time_us, turn, &ball);

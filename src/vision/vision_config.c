@@ -21,6 +21,10 @@ static void whole(rows *r, const char *name, int *target, double min, double max
   row(r, (vs_config_key){name, VS_CONFIG_INT, target, 0, min, max, help});
 }
 
+static void word(rows *r, const char *name, char *target, size_t size, const char *help) {
+  row(r, (vs_config_key){name, VS_CONFIG_TEXT, target, size, 0, 0, help});
+}
+
 static void colour(rows *r, const char *const names[4], vs_colour *c) {
   number(r, names[0], &c->hue_min_deg, 0, 360, "red 0, yellow 60, blue 240; min > max wraps");
   number(r, names[1], &c->hue_max_deg, 0, 360, "red 0, yellow 60, blue 240");
@@ -28,7 +32,7 @@ static void colour(rows *r, const char *const names[4], vs_colour *c) {
   number(r, names[3], &c->value_min, 0, 1, "0 black, 1 bright");
 }
 
-int vs_vision_schema(vs_detector_def *d, vs_track_def *t, vs_camera_def *c, char family[32], vs_config_key *out,
+int vs_vision_schema(vs_detector_def *d, vs_track_def *t, vs_camera_def *c, vs_vision_words *words, vs_config_key *out,
                      int capacity) {
   static const char *const ball[] = {"vision.ball_hue_min_deg", "vision.ball_hue_max_deg", "vision.ball_saturation_min",
                                      "vision.ball_value_min"};
@@ -37,19 +41,27 @@ int vs_vision_schema(vs_detector_def *d, vs_track_def *t, vs_camera_def *c, char
   static const char *const yellow[] = {"vision.yellow_hue_min_deg", "vision.yellow_hue_max_deg",
                                        "vision.yellow_saturation_min", "vision.yellow_value_min"};
   static const char *const tag[] = {"vision.robot0_tag", "vision.robot1_tag", "vision.robot2_tag"};
+  static const char *const aruco[] = {"vision.blue0_aruco",   "vision.blue1_aruco",   "vision.blue2_aruco",
+                                      "vision.yellow0_aruco", "vision.yellow1_aruco", "vision.yellow2_aruco"};
   static const char *const yaw[] = {"vision.robot0_yaw_rad", "vision.robot1_yaw_rad", "vision.robot2_yaw_rad"};
   rows r = {out, 0, capacity};
   whole(&r, "vision.width_px", &c->width, 0, 8192, "asked of the camera; 0: 1280x720 or 640x480");
   whole(&r, "vision.height_px", &c->height, 0, 8192, "asked of the camera");
   number(&r, "vision.fps", &c->fps, 0, 1000, "asked of the camera; 0: 60");
   number(&r, "vision.exposure_ms", &c->exposure_ms, 0, 1000, "above 5 ms tags blur; 0: left alone");
-  char name[32]; // by way of a copy: the family may already point to this buffer
+  char name[sizeof words->family]; // by way of a copy: the family may already point to this buffer
   snprintf(name, sizeof name, "%s", d->tag.family);
-  memcpy(family, name, sizeof name);
-  d->tag.family = family;
-  row(&r, (vs_config_key){"vision.tag_family", VS_CONFIG_TEXT, family, 32, 0, 0, "of libapriltag"});
+  memcpy(words->family, name, sizeof name);
+  d->tag.family = words->family;
+  snprintf(words->own_tags, sizeof words->own_tags, "%s", vs_mark_name(d->own));
+  snprintf(words->their_tags, sizeof words->their_tags, "%s", vs_mark_name(d->their));
+  word(&r, "vision.own_tags", words->own_tags, sizeof words->own_tags, "what our robots wear: april or aruco");
+  word(&r, "vision.their_tags", words->their_tags, sizeof words->their_tags, "what theirs wear: patch or aruco");
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++)
+    whole(&r, aruco[i], &t->aruco_id[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE], -1, 1023, "ArUco mark; -1: not playing");
+  word(&r, "vision.tag_family", words->family, sizeof words->family, "AprilTags: of libapriltag");
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
-    whole(&r, tag[i], &t->tag_id[i], -1, 100000, "tag id of the robot; -1: not playing");
+    whole(&r, tag[i], &t->tag_id[i], -1, 100000, "AprilTag of the robot; -1: not playing");
     number(&r, yaw[i], &t->tag_yaw_rad[i], -7, 7, "from the robot's front to the pattern's top, counter-clockwise");
   }
   number(&r, "vision.tag_decimate", &d->tag.decimate, 1, 8, "tags are searched in a picture smaller by this");
@@ -73,4 +85,22 @@ int vs_vision_schema(vs_detector_def *d, vs_track_def *t, vs_camera_def *c, char
   number(&r, "vision.patch_noise_m", &t->patch_noise_m, 1e-5, 0.1, "tracker: of an adversary");
   number(&r, "vision.heading_noise_rad", &t->heading_noise_rad, 1e-4, 1, "tracker: of a tag");
   return r.count;
+}
+
+void vs_vision_marks(vs_detector_def *d, vs_track_def *t, vs_mark own, vs_mark their) {
+  d->own = t->own = own;
+  d->their = t->their = their;
+  d->tag.ids = 0;
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
+    int id = t->aruco_id[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+    if (id >= 0) d->tag.id[d->tag.ids++] = id;
+  }
+}
+
+vs_status vs_vision_take(const vs_vision_words *words, vs_detector_def *d, vs_track_def *t, vs_error *err) {
+  vs_mark own, their;
+  vs_status s = vs_mark_parse("vision.own_tags =", words->own_tags, false, &own, err);
+  if (s == VS_OK) s = vs_mark_parse("vision.their_tags =", words->their_tags, true, &their, err);
+  if (s == VS_OK) vs_vision_marks(d, t, own, their);
+  return s;
 }

@@ -119,6 +119,16 @@ static void printed_tags_are_read_back_at_true_size(void **state) {
       4);
   // The border is 5 of 9 cells of 78 mm, 43.33 mm, at 300 / 25.4 = 11.81 dots per mm: 511.8 dots.
   assert_near(corner[2] - corner[0], 511.8, 1.5);
+  // The league's: 70 mm, 826.8 dots.
+  vsss(&run, in_folder("calibrate --print-tags 272,955 --family aruco --out %s/marks.png"));
+  assert_int_equal(run.status, 0);
+  vsss(&run, in_folder("detect %s/marks.png --family aruco"));
+  assert_non_null(strstr(run.out, "tag 272"));
+  assert_non_null(strstr(run.out, "tag 955"));
+  assert_int_equal(sscanf(strstr(run.out, "corners"), "corners (%lf %*f) (%lf", &corner[0], &corner[1]), 2);
+  assert_near(corner[1] - corner[0], 826.8, 1.5);
+  vsss(&run, in_folder("calibrate --print-tags 256,272,273,955,771,939 --family aruco --out %s/marks.pdf"));
+  assert_int_equal(run.status, 0);
   vsss(&run, in_folder("calibrate --print-tags 0,1,2,3,4,5 --out %s/tags.pdf"));
   assert_int_equal(run.status, 0);
   char path[128], head[9] = {0};

@@ -77,11 +77,9 @@ static void the_overhead_camera_shows_the_ball_where_its_pinhole_says(void **sta
 static void a_cap_picture_shows_its_top_row_to_the_robots_front(void **state) {
   (void)state;
   // Black but for the first quarter of the top row: front left.
-  static uint8_t picture[4][4] = {{255, 0, 0, 0}};
+  static uint8_t picture[4][4][3] = {{{255, 255, 255}}};
   vs_render_def def = vs_render_def_default(VS_VIEW_CAMERA);
-  def.cap[VS_BLUE][1] = &picture[0][0];
-  def.cap_px = 4;
-  def.cap_size_m = VS_ROBOT_SIZE_M;
+  def.cap[VS_BLUE][1] = (vs_cap){&picture[0][0][0], 4, VS_ROBOT_SIZE_M};
   vs_render *r = renderer(&def);
   uint8_t *rgb = malloc(640 * 480 * 3);
   vs_world w;

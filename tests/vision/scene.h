@@ -12,6 +12,7 @@
 #include "vsss/detect.h"
 #include "vsss/field.h"
 #include "vsss/image.h"
+#include "vsss/mark.h"
 #include "vsss/rng.h"
 #include "vsss/tag.h"
 #include "vsss/world.h"
@@ -22,11 +23,12 @@ enum { SCENE_SAMPLES = 4 }; // per pixel and axis
 typedef struct scene {
   int width, height;
   double height_m, focal_px;
-  vs_world world; // robot[own] carry tags 0, 1, 2, the others patches
+  vs_world world; // robot[own] carry tags 0, 1, 2, the others patches, unless scene_wear says otherwise
   vs_team own;
   double noise; // deviation in grey levels
   uint64_t seed;
   vs_tag_pattern tag[VS_TEAM_SIZE];
+  vs_mark_picture mark[VS_TEAMS][VS_TEAM_SIZE]; // px 0: as above
   uint8_t *bgr, *grey;
 } scene;
 
@@ -49,6 +51,11 @@ static inline void scene_init(scene *s, int width, int height) {
   if (!s->bgr || !s->grey) abort();
 }
 
+static inline void scene_wear(scene *s, int team, int index, vs_mark mark, int id) {
+  vs_error err;
+  if (vs_mark_paint(mark, (vs_team)team, id, &s->mark[team][index], &err) != VS_OK) abort();
+}
+
 static inline void scene_free(scene *s) {
   free(s->bgr);
   free(s->grey);
@@ -66,8 +73,15 @@ static inline void scene_floor(double x, double y, uint8_t out[3]) {
 
 // Colour of the cap of a robot at (u, v) in its own frame, u to the front, v to its left.
 static inline void scene_cap(const scene *s, int team, int index, double u, double v, uint8_t out[3]) {
+  const vs_mark_picture *m = &s->mark[team][index];
   memset(out, 25, 3);
-  if (team == (int)s->own) {
+  if (m->px) {
+    int row = (int)floor((0.5 - u / m->size_m) * m->px), column = (int)floor((0.5 - v / m->size_m) * m->px);
+    memset(out, 225, 3);
+    // Printed colours are paler than the picture's: 15 to 225.
+    if (row >= 0 && row < m->px && column >= 0 && column < m->px)
+      for (int k = 0; k < 3; k++) out[k] = (uint8_t)(15 + m->rgb[3 * (row * m->px + column) + 2 - k] * 210 / 255);
+  } else if (team == (int)s->own) {
     const vs_tag_pattern *t = &s->tag[index];
     int row = (int)floor((VS_TAG_PAPER_M / 2 - u) / VS_TAG_PAPER_M * t->cells);
     int column = (int)floor((VS_TAG_PAPER_M / 2 - v) / VS_TAG_PAPER_M * t->cells);

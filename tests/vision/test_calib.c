@@ -72,6 +72,23 @@ static void a_tilted_camera_with_distortion_maps_there_and_back(void **state) {
       }
 }
 
+static void a_square_s_corners_give_its_middle_and_the_way_its_top_shows(void **state) {
+  (void)state;
+  vs_calib c = overhead();
+  c.k1 = -0.2;
+  // Corners bottom left, bottom right, top right, top left of a square of 40 mm that shows 0.6 rad to the left of +x.
+  const double u[4] = {-0.02, -0.02, 0.02, 0.02}, v[4] = {0.02, -0.02, -0.02, 0.02};
+  double corner[4][2], x, y, theta;
+  for (int i = 0; i < 4; i++)
+    assert_true(vs_calib_to_pixel(&c, 0.6 + cos(0.6) * u[i] - sin(0.6) * v[i], -0.5 + sin(0.6) * u[i] + cos(0.6) * v[i],
+                                  0.08, &corner[i][0], &corner[i][1]));
+  assert_true(vs_calib_square(&c, corner, 0.08, &x, &y, &theta));
+  assert_near(x, 0.6, 1e-7);
+  assert_near(y, -0.5, 1e-7);
+  assert_near(theta, 0.6, 1e-6);
+  assert_false(vs_calib_square(&c, corner, 3.0, &x, &y, &theta)); // above the camera
+}
+
 static void the_lens_is_where_the_pose_says(void **state) {
   (void)state;
   vs_calib c = overhead();
@@ -117,6 +134,7 @@ int main(void) {
       cmocka_unit_test(a_cap_in_the_corner_is_corrected_by_37_mm),
       cmocka_unit_test(pixels_per_metre_is_focal_length_over_distance),
       cmocka_unit_test(a_tilted_camera_with_distortion_maps_there_and_back),
+      cmocka_unit_test(a_square_s_corners_give_its_middle_and_the_way_its_top_shows),
       cmocka_unit_test(the_lens_is_where_the_pose_says),
       cmocka_unit_test(a_ray_that_misses_the_plane_is_refused),
       cmocka_unit_test(another_picture_size_is_refused_with_both_sizes),

@@ -165,9 +165,9 @@ static void a_silly_definition_is_a_usage_error(void **state) {
   def.patch_m = 0;
   assert_int_equal(vs_detector_new(&def, &detector, &err), VS_USAGE);
   def = vs_detector_def_default();
-  def.tag.family = "aruco";
+  def.tag.family = "arucco";
   assert_int_equal(vs_detector_new(&def, &detector, &err), VS_USAGE);
-  assert_non_null(strstr(err.text, "aruco"));
+  assert_non_null(strstr(err.text, "arucco"));
 }
 
 // Footage of a real field: two yellow robots, three blue ones, one moved by hand, an orange ball, two-colour patches.

@@ -81,6 +81,38 @@ static void poses_at_640x480_are_within_2_mm_and_1_degree_of_the_truth(void **st
 }
 
 // Motion during the exposure: 8 mm is 2 ms at full speed and what tags bear (field.md 0.7); colours bear more.
+// LARC 2026: ArUco marks of 70 mm on both teams, the adversaries' headings with them.
+static void the_league_s_marks_of_both_teams_are_within_2_mm_and_1_degree_of_the_truth(void **state) {
+  (void)state;
+  static scene s;
+  scene_init(&s, 640, 480);
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++)
+    scene_wear(&s, i / VS_TEAM_SIZE, i % VS_TEAM_SIZE, VS_MARK_ARUCO,
+               vs_aruco_league_id[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE]);
+  vs_calib c = vs_calib_overhead(640, 480, s.height_m, scene_fov_rad(&s));
+  vs_detector_def def = vs_detector_def_default();
+  vs_track_def track = vs_track_def_default();
+  def.own = def.their = track.own = track.their = VS_MARK_ARUCO;
+  def.px_per_m = vs_calib_px_per_m(&c, VS_ROBOT_HEIGHT_M);
+  vs_detector *detector;
+  assert_ok(vs_detector_new(&def, &detector, err));
+  vs_tracker tracker;
+  vs_track_init(&tracker, &track);
+  rms e = run(&s, detector, &c, &tracker);
+  vs_world w;
+  vs_track_world(&tracker, 0, &w);
+  for (int i = 0; i < VS_TEAM_SIZE; i++)
+    assert_near(vs_wrap_rad(w.robot[VS_YELLOW][i].pose.theta_rad - s.world.robot[VS_YELLOW][i].pose.theta_rad), 0,
+                0.02);
+  print_message("own %.2f mm %.2f deg, ball %.2f mm, adversaries %.2f mm rms\n", e.own_mm, e.own_deg, e.ball_mm,
+                e.adversary_mm);
+  assert_true(e.own_mm < 2.0 && e.own_deg < 1.0 && e.ball_mm < 2.0 && e.adversary_mm < 2.0);
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++)
+    assert_int_equal(tracker.stats.lost[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE], 0);
+  vs_detector_free(detector);
+  scene_free(&s);
+}
+
 static void a_field_smeared_by_8_mm_is_still_seen_whole(void **state) {
   (void)state;
   enum { STEPS = 5, W = 640, H = 480 };
@@ -129,6 +161,7 @@ static void a_field_smeared_by_8_mm_is_still_seen_whole(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_field_smeared_by_8_mm_is_still_seen_whole),
+      cmocka_unit_test(the_league_s_marks_of_both_teams_are_within_2_mm_and_1_degree_of_the_truth),
       cmocka_unit_test(poses_at_640x480_are_within_2_mm_and_1_degree_of_the_truth),
   };
   return cmocka_run_group_tests_name("vision/eyes", tests, NULL, NULL);

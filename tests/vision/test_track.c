@@ -72,6 +72,35 @@ static void a_tag_gives_place_and_heading_of_its_robot_corrected_for_height(void
   }
 }
 
+// LARC 2026: both teams' marks have numbers, so an adversary keeps its place in the world and shows its heading.
+static void adversaries_with_marks_keep_their_number_and_show_their_heading(void **state) {
+  (void)state;
+  vs_calib c = calib();
+  vs_tracker t;
+  vs_track_def def = vs_track_def_default();
+  def.own = def.their = VS_MARK_ARUCO;
+  for (int plus = 0; plus < 2; plus++) {
+    def.attack_plus_x = plus;
+    vs_track_init(&t, &def);
+    vs_detections seen = at(0);
+    see_tag(&seen, &c, 273, -0.5, 0.1, 0.3);  // blue 2
+    see_tag(&seen, &c, 771, 0.4, 0.2, 1.2);   // yellow 1
+    see_tag(&seen, &c, 955, 0.4, -0.3, -2.0); // yellow 0
+    see_tag(&seen, &c, 0, 0, 0, 0);           // an AprilTag that nobody wears
+    for (int i = 0; i < 3; i++) seen.tag[i].kind = VS_MARK_ARUCO;
+    vs_track_update(&t, &c, &seen);
+    vs_world w = world_of(&t);
+    double sign = plus ? 1 : -1, turn = plus ? 0 : VS_PI;
+    assert_true(w.robot[VS_BLUE][2].valid && w.robot[VS_YELLOW][0].valid && w.robot[VS_YELLOW][1].valid);
+    assert_false(w.robot[VS_BLUE][0].valid || w.robot[VS_YELLOW][2].valid);
+    assert_near(w.robot[VS_YELLOW][1].pose.x_m, sign * 0.4, 1e-9);
+    assert_near(w.robot[VS_YELLOW][1].pose.y_m, sign * 0.2, 1e-9);
+    assert_near(vs_wrap_rad(w.robot[VS_YELLOW][1].pose.theta_rad - 1.2 - turn), 0, 1e-9);
+    assert_near(vs_wrap_rad(w.robot[VS_YELLOW][0].pose.theta_rad + 2.0 - turn), 0, 1e-9);
+    assert_near(vs_wrap_rad(w.robot[VS_BLUE][2].pose.theta_rad - 0.3 - turn), 0, 1e-9);
+  }
+}
+
 static void a_tag_glued_on_askew_is_put_right_by_its_yaw(void **state) {
   (void)state;
   vs_calib c = calib();
@@ -401,6 +430,7 @@ static void noise_is_smoothed_by_a_calm_model(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_tag_gives_place_and_heading_of_its_robot_corrected_for_height),
+      cmocka_unit_test(adversaries_with_marks_keep_their_number_and_show_their_heading),
       cmocka_unit_test(a_tag_glued_on_askew_is_put_right_by_its_yaw),
       cmocka_unit_test(the_world_is_turned_so_that_blue_attacks_plus_x),
       cmocka_unit_test(real_time_steps_give_the_true_velocity_at_any_frame_rate),

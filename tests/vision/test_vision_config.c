@@ -7,11 +7,11 @@
 #include "vsss/tag.h"
 #include "vsss/vision_config.h"
 
-enum { ROOM = 80 };
+enum { ROOM = 120 };
 static vs_detector_def detector;
 static vs_track_def tracker;
 static vs_camera_def camera;
-static char family[32];
+static vs_vision_words words;
 static vs_config_key rows[ROOM + 1];
 
 static int schema(void) {
@@ -19,7 +19,7 @@ static int schema(void) {
   detector = vs_detector_def_default();
   tracker = vs_track_def_default();
   camera = vs_camera_def_default();
-  return vs_vision_schema(&detector, &tracker, &camera, family, rows, ROOM);
+  return vs_vision_schema(&detector, &tracker, &camera, &words, rows, ROOM);
 }
 
 static void every_row_has_a_name_of_the_section_a_target_and_help(void **state) {
@@ -58,7 +58,23 @@ static void without_a_file_the_family_is_the_default(void **state) {
   (void)state;
   schema();
   assert_string_equal(detector.tag.family, VS_TAG_FAMILY);
-  assert_ptr_equal(detector.tag.family, family);
+  assert_ptr_equal(detector.tag.family, words.family);
+}
+
+static void kinds_of_marks_and_their_ids_are_taken_from_the_file(void **state) {
+  (void)state;
+  schema();
+  assert_ok(
+      vs_config_parse("field.ini", "[vision]\nown_tags = aruco\ntheir_tags = aruco\nyellow1_aruco = -1\n", rows, err));
+  assert_ok(vs_vision_take(&words, &detector, &tracker, err));
+  assert_true(detector.own == VS_MARK_ARUCO && detector.their == VS_MARK_ARUCO);
+  assert_true(tracker.own == VS_MARK_ARUCO && tracker.their == VS_MARK_ARUCO);
+  assert_int_equal(tracker.aruco_id[VS_BLUE][0], 256);
+  assert_int_equal(detector.tag.ids, 5);
+  vs_error err;
+  strcpy(words.their_tags, "april");
+  assert_int_equal(vs_vision_take(&words, &detector, &tracker, &err), VS_USAGE);
+  assert_non_null(strstr(err.text, "vision.their_tags"));
 }
 
 static void a_value_out_of_range_is_refused_with_its_line(void **state) {
@@ -73,7 +89,7 @@ static void a_value_out_of_range_is_refused_with_its_line(void **state) {
 static void no_more_than_the_capacity_is_written(void **state) {
   (void)state;
   memset(rows, 0, sizeof rows);
-  assert_int_equal(vs_vision_schema(&detector, &tracker, &camera, family, rows, 5), 5);
+  assert_int_equal(vs_vision_schema(&detector, &tracker, &camera, &words, rows, 5), 5);
   assert_null(rows[5].name);
 }
 
@@ -104,9 +120,9 @@ static void the_shipped_file_shows_every_key_at_its_default(void **state) {
   vs_detector_def d = vs_detector_def_default();
   vs_track_def t = vs_track_def_default();
   vs_camera_def c = vs_camera_def_default();
-  char name[32];
+  vs_vision_words name;
   static vs_config_key defaults[ROOM];
-  assert_int_equal(vs_vision_schema(&d, &t, &c, name, defaults, ROOM), n);
+  assert_int_equal(vs_vision_schema(&d, &t, &c, &name, defaults, ROOM), n);
   for (int i = 0; i < n; i++) {
     const void *file = rows[i].target, *own = defaults[i].target;
     bool same = rows[i].type == VS_CONFIG_REAL  ? fabs(*(const double *)file - *(const double *)own) < 1e-12
@@ -121,6 +137,7 @@ int main(void) {
       cmocka_unit_test(every_row_has_a_name_of_the_section_a_target_and_help),
       cmocka_unit_test(a_file_sets_what_it_names_and_leaves_the_rest),
       cmocka_unit_test(without_a_file_the_family_is_the_default),
+      cmocka_unit_test(kinds_of_marks_and_their_ids_are_taken_from_the_file),
       cmocka_unit_test(a_value_out_of_range_is_refused_with_its_line),
       cmocka_unit_test(the_shipped_file_shows_every_key_at_its_default),
       cmocka_unit_test(no_more_than_the_capacity_is_written),
