@@ -46,11 +46,18 @@ vs_status vs_cli_team(const char *flag, const char *name, vs_team *out, vs_error
 // Asks for real-time priority; a refusal is a note on stderr, not an error.
 void vs_cli_realtime(int priority);
 
+// First thing of the program: standard streams that are closed must not become the first files that it opens, and a
+// reader of its output that went away (| head) must not kill it before it has put things in order. False: there is
+// nowhere to print to, which has been said.
+bool vs_cli_begin(void);
+// Last thing: status, or VS_FAIL where what was printed did not all arrive.
+int vs_cli_end(const char *command, int status);
+
 // Prints "vsss COMMAND: text" on stderr and returns the exit status that belongs to it.
 int vs_cli_error(const char *command, const vs_error *err);
 
 // Set by SIGINT, SIGTERM and SIGHUP (unless the program was started to ignore that one) once vs_cli_catch_interrupts was
-// called; a second signal ends the program at once.
+// called; a second signal ends the program at once. And once standard output cannot be written any more.
 void vs_cli_catch_interrupts(void);
 bool vs_cli_interrupted(void);
 // The same without disturbing a thread that computes: called before any other is started, blocks these signals in all and

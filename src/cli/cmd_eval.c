@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "json_text.h"
 #include "report.h"
 #include "vsss/clock.h"
 
@@ -197,7 +198,7 @@ static void write_ratings(const eval_command *c, FILE *out) {
   fprintf(out, "\"elo\": {");
   for (int i = 0; i < c->players; i++) {
     fprintf(out, "%s", i ? ", " : "");
-    vs_report_json_text(out, c->player[i]);
+    vs_json_put(out, c->player[i]);
     fprintf(out, ": %.2f", rating[i]);
   }
   fprintf(out, "},\n");
@@ -214,9 +215,9 @@ static vs_status write_json(const eval_command *c, FILE *out, vs_error *err) {
     const pairing *p = &c->pairings[i];
     if (p->summary.matches == 0) continue;
     fprintf(out, "%s\n{\"blue\": ", separator);
-    vs_report_json_text(out, p->uri[VS_BLUE]);
+    vs_json_put(out, p->uri[VS_BLUE]);
     fprintf(out, ", \"yellow\": ");
-    vs_report_json_text(out, p->uri[VS_YELLOW]);
+    vs_json_put(out, p->uri[VS_YELLOW]);
     fprintf(out, ",\n \"summary\": ");
     vs_report_json_summary(out, &p->summary);
     fprintf(out, ",\n \"matches\": ");

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "child.h"
 #include "cli.h"
 #include "commands.h"
 
@@ -38,29 +39,66 @@ static const figure figures[] = {
     {"speed", "Speed", "transitions/s", {{"transitions_per_s", "transitions/s"}}},
 };
 
-// An update ends few episodes: each point is the mean of half a percent of the run.
-static void plot_figure(FILE *out, const figure *f, const char *folder, const char *ending) {
-  fprintf(out, "set output '%s/%s.%s'\nset title '%s'\nset ylabel '%s'\nplot ", folder, f->name, ending, f->title,
-          f->y);
+// An update ends few episodes: each point is the mean of half a percent of the run. gnuplot runs in the run's folder.
+static void plot_figure(FILE *out, const figure *f, const char *ending) {
+  fprintf(out, "set output '%s.%s'\nset title '%s'\nset ylabel '%s'\nplot ", f->name, ending, f->title, f->y);
   for (int i = 0; f->curve[i][0]; i++)
     fprintf(out,
-            "%s'%s/progress.csv' using (bin*floor(column('transitions')/1e6/bin)):(column('%s')) smooth unique "
+            "%s'progress.csv' using (bin*floor(column('transitions')/1e6/bin)):(column('%s')) smooth unique "
             "with lines lw 2 title '%s'",
-            i ? ", " : "", folder, f->curve[i][0], f->curve[i][1]);
+            i ? ", " : "", f->curve[i][0], f->curve[i][1]);
+  fprintf(out, "\n");
+}
+
+enum { OPPONENTS_MAX = 32 };
+typedef struct opponents {
+  int count;
+  char name[OPPONENTS_MAX][128];
+} opponents;
+
+// The fourth column of eval.csv, each name once.
+static void read_opponents(const char *folder, opponents *o) {
+  char path[PATH_MAX], line[4096];
+  snprintf(path, sizeof path, "%s/eval.csv", folder);
+  FILE *f = fopen(path, "r");
+  o->count = 0;
+  for (bool header = true; f && fgets(line, sizeof line, f); header = false) {
+    char *rest = line, *cell = NULL;
+    for (int column = 0; column < 4; column++) cell = strsep(&rest, ",");
+    int known = 0;
+    while (cell && known < o->count && strcmp(o->name[known], cell) != 0) known++;
+    if (header || !rest || !cell || known < o->count || o->count == OPPONENTS_MAX) continue;
+    snprintf(o->name[o->count++], sizeof *o->name, "%s", cell);
+  }
+  if (f) fclose(f);
+}
+
+// In single quotes gnuplot takes everything as it is but the quote, which is written twice.
+static void quoted(FILE *out, const char *text) {
+  fputc('\'', out);
+  for (; *text; text++) fprintf(out, *text == '\'' ? "''" : "%c", *text);
+  fputc('\'', out);
+}
+
+static void plot_opponents(FILE *out, const opponents *o, const char *values, const char *style) {
+  fprintf(out, "plot ");
+  for (int i = 0; i < o->count; i++) {
+    fprintf(out, "%s'eval.csv' using (strcol('opponent') eq ", i ? ", " : "");
+    quoted(out, o->name[i]);
+    fprintf(out, " ? column('transitions')/1e6 : NaN):%s with %s lw 2 title ", values, style);
+    quoted(out, o->name[i]);
+    fprintf(out, " noenhanced");
+  }
   fprintf(out, "\n");
 }
 
 // Score and win rate against each opponent of the periodic evaluation, with the 95 % interval of the score.
-static void plot_eval(FILE *out, const char *folder, const char *ending) {
-  fprintf(out,
-          "opponents = system(\"tail -n +2 '%s/eval.csv' | cut -d, -f4 | sort -u\")\n"
-          "set output '%s/eval_score.%s'\nset title 'Score in matches'\nset ylabel 'goal difference per match'\n"
-          "plot for [o in opponents] '%s/eval.csv' using (strcol('opponent') eq o ? column('transitions')/1e6 : NaN):"
-          "(column('score')):(column('score_low')):(column('score_high')) with yerrorlines lw 2 title o\n"
-          "set output '%s/eval_win.%s'\nset title 'Matches won'\nset ylabel 'percent'\nset yrange [0:100]\n"
-          "plot for [o in opponents] '%s/eval.csv' using (strcol('opponent') eq o ? column('transitions')/1e6 : NaN):"
-          "(100*column('win')) with linespoints lw 2 title o\nset autoscale y\n",
-          folder, folder, ending, folder, folder, ending, folder);
+static void plot_eval(FILE *out, const opponents *o, const char *ending) {
+  fprintf(out, "set output 'eval_score.%s'\nset title 'Score in matches'\nset ylabel 'goal difference per match'\n",
+          ending);
+  plot_opponents(out, o, "(column('score')):(column('score_low')):(column('score_high'))", "yerrorlines");
+  fprintf(out, "set output 'eval_win.%s'\nset title 'Matches won'\nset ylabel 'percent'\nset yrange [0:100]\n", ending);
+  plot_opponents(out, o, "(100*column('win'))", "linespoints");
 }
 
 static bool has_rows(const char *folder, const char *name) {
@@ -73,27 +111,52 @@ static bool has_rows(const char *folder, const char *name) {
   return lines == 2;
 }
 
-static vs_status plot(const char *folder, bool svg, vs_error *err) {
-  if (strchr(folder, '\'') || strchr(folder, '"'))
-    return vs_fail(err, VS_USAGE, "%s: gnuplot cannot take a folder with quotes in its name", folder);
-  if (!has_rows(folder, "progress.csv"))
-    return vs_fail(err, VS_FAIL, "%s/progress.csv: missing or empty: is this the folder of a run?", folder);
+static void write_script(FILE *out, const opponents *o, bool svg) {
   const char *ending = svg ? "svg" : "png";
-  FILE *out = popen("gnuplot 2>&1", "w");
-  if (!out) return vs_fail(err, VS_FAIL, "cannot start gnuplot: %s", strerror(errno));
   fprintf(out,
           "set terminal %s\nset datafile separator ','\nset key autotitle columnhead\nset datafile columnheaders\nset "
           "grid\nset key outside "
           "below\nset xlabel 'million transitions'\n"
-          "stats '%s/progress.csv' using (column('transitions')/1e6) nooutput\nbin = STATS_max/200\n",
-          svg ? "svg size 900,560 font 'sans,14'" : "pngcairo size 900,560 font 'sans,12'", folder);
-  for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) plot_figure(out, &figures[i], folder, ending);
-  bool eval = has_rows(folder, "eval.csv");
-  if (eval) plot_eval(out, folder, ending);
-  if (pclose(out) != 0)
-    return vs_fail(err, VS_FAIL, "gnuplot failed (its words are above); without it: apt install gnuplot-nox");
+          "stats 'progress.csv' using (column('transitions')/1e6) nooutput\nbin = STATS_max/200\n",
+          svg ? "svg size 900,560 font 'sans,14'" : "pngcairo size 900,560 font 'sans,12'");
+  for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) plot_figure(out, &figures[i], ending);
+  if (o->count) plot_eval(out, o, ending);
+}
+
+// said: what it says, of which only the reason of a failure is worth reading.
+static vs_status run_gnuplot(FILE *script, FILE *said, const char *folder, vs_error *err) {
+  char *argv[] = {"gnuplot", "-", NULL}, line[256], why[256] = "no reason given";
+  if (fflush(script) != 0 || fseek(script, 0, SEEK_SET) != 0)
+    return vs_fail(err, VS_FAIL, "a temporary file: %s", strerror(errno));
+  const vs_child_def def = {.argv = argv, .folder = folder, .in = fileno(script), .err = fileno(said)};
+  pid_t gnuplot;
+  int failed = vs_child_start(&def, &gnuplot);
+  if (failed == ENOENT) return vs_fail(err, VS_FAIL, "gnuplot is missing: apt install gnuplot-nox");
+  if (failed) return vs_fail(err, VS_FAIL, "cannot start gnuplot: %s", strerror(failed));
+  if (vs_child_wait(gnuplot) == 0) return VS_OK;
+  rewind(said);
+  while (fgets(line, sizeof line, said)) {
+    line[strcspn(line, "\n")] = '\0';
+    if (line[0]) memcpy(why, line, sizeof why);
+  }
+  return vs_fail(err, VS_FAIL, "gnuplot: %s", why);
+}
+
+static vs_status plot(const char *folder, bool svg, vs_error *err) {
+  if (!has_rows(folder, "progress.csv"))
+    return vs_fail(err, VS_FAIL, "%s/progress.csv: missing or empty: is this the folder of a run?", folder);
+  opponents o;
+  read_opponents(folder, &o);
+  FILE *script = tmpfile(), *said = tmpfile();
+  vs_status s = script && said ? VS_OK : vs_fail(err, VS_FAIL, "a temporary file: %s", strerror(errno));
+  if (s == VS_OK) write_script(script, &o, svg);
+  if (s == VS_OK) s = run_gnuplot(script, said, folder, err);
+  if (script) fclose(script);
+  if (said) fclose(said);
+  if (s != VS_OK) return s;
+  const char *ending = svg ? "svg" : "png";
   for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) printf("%s/%s.%s\n", folder, figures[i].name, ending);
-  if (eval) printf("%s/eval_score.%s\n%s/eval_win.%s\n", folder, ending, folder, ending);
+  if (o.count) printf("%s/eval_score.%s\n%s/eval_win.%s\n", folder, ending, folder, ending);
   return VS_OK;
 }
 

@@ -1,4 +1,5 @@
 // vsss replay: what a log of lcm-logger holds, as text, as JSON, as a video, or sent once more.
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +23,9 @@ vs_status replay_publish(vs_bus_log *log, const vs_flag_list *wanted, const char
     if (s != VS_OK || end) break;
     if (event.number == 0) first_us = event.utime_us;
     if (wanted->count && !replay_wants(wanted, event.channel)) continue;
-    int64_t due_us = start_us + (int64_t)((double)(event.utime_us - first_us) / speed);
+    // Time stamps may be anything: at most ten years from now.
+    double after_us = ((double)event.utime_us - (double)first_us) / speed;
+    int64_t due_us = start_us + (int64_t)fmax(fmin(after_us, 3e14), -3e14);
     // In short sleeps, so that Ctrl-C is heard in a long pause.
     for (int64_t now_us; !vs_cli_interrupted() && (now_us = vs_clock_monotonic_us()) < due_us;)
       vs_clock_sleep_until_us(due_us < now_us + 100000 ? due_us : now_us + 100000);

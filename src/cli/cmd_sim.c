@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "json_text.h"
 #include "message_text.h"
 #include "report.h"
 #include "vsss/clock.h"
@@ -208,9 +209,9 @@ static void print_series(const sim_command *c, const vs_series_summary *summary,
 
 static void print_json(const sim_command *c, const vs_series_summary *summary, double wall_s) {
   printf("{\"command\": \"sim\", \"blue\": ");
-  vs_report_json_text(stdout, c->uri[VS_BLUE]);
+  vs_json_put(stdout, c->uri[VS_BLUE]);
   printf(", \"yellow\": ");
-  vs_report_json_text(stdout, c->uri[VS_YELLOW]);
+  vs_json_put(stdout, c->uri[VS_YELLOW]);
   printf(", ");
   vs_report_json_flags(stdout, &c->match);
   printf(", \"complete\": %s, \"wall_s\": %.3f,\n \"summary\": ", summary->matches == c->matches ? "true" : "false",

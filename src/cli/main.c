@@ -34,6 +34,7 @@ static void print_commands(FILE *out) {
 }
 
 int main(int argc, char **argv) {
+  if (!vs_cli_begin()) return VS_USAGE;
   vs_player_register("lcm:", PLAYER_LCM_HELP, player_lcm_open);
   if (argc < 2) {
     print_commands(stderr);
@@ -41,10 +42,10 @@ int main(int argc, char **argv) {
   }
   if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h") || !strcmp(argv[1], "help")) {
     print_commands(stdout);
-    return 0;
+    return vs_cli_end("help", 0);
   }
   for (const command *c = commands; c->name; c++)
-    if (!strcmp(argv[1], c->name)) return c->run(argc - 1, argv + 1);
+    if (!strcmp(argv[1], c->name)) return vs_cli_end(c->name, c->run(argc - 1, argv + 1));
   fprintf(stderr, "vsss: unknown command '%s'; 'vsss --help' lists them\n", argv[1]);
   return VS_USAGE;
 }

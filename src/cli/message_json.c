@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "json_text.h"
 #include "message_text.h"
 
 typedef struct json {
@@ -59,21 +60,10 @@ static void boolean(json *j, const char *key, bool value) {
 }
 
 static void quote(json *j, const char *text) {
+  char piece[8];
   raw(j, "\"");
-  for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
-    if (*c == '"' || *c == '\\')
-      raw(j, "\\%c", *c);
-    else if (*c < 0x20 || *c == 0x7F)
-      raw(j, "\\u%04x", *c);
-    else
-      raw(j, "%c", *c);
-  }
+  for (vs_json_next(&text, piece); piece[0]; vs_json_next(&text, piece)) raw(j, "%s", piece);
   raw(j, "\"");
-}
-
-void vs_json_quote(const char *text, char *out, size_t size) {
-  json j = {out, size, true};
-  quote(&j, text);
 }
 
 static void string(json *j, const char *key, const char *value) {

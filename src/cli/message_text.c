@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -115,5 +116,15 @@ void vs_message_text(const vs_message *m, char *out, size_t size) {
     add(&t, "%dx%d %s %d bytes", m->as.image.width_px, m->as.image.height_px, m->as.image.format, m->as.image.size);
     break;
   case VS_CHANNELS: break;
+  }
+}
+
+void vs_text_clean(char *text) {
+  for (unsigned char *c = (unsigned char *)text; *c; c++) {
+    if (c[0] == 0xC2 && c[1] >= 0x80 && c[1] < 0xA0) c[0] = '?', c[1] = '?'; // U+0080 to U+009F
+    if (*c < 0x20 || *c == 0x7F) *c = '?';
+    // A byte of 0x80 to 0x9F on its own is a control character to terminals of one byte per character.
+    bool continues = (char *)c > text && c[-1] >= 0x80;
+    if (*c >= 0x80 && *c < 0xA0 && !continues) *c = '?';
   }
 }

@@ -9,8 +9,9 @@ void vs_message_text(const vs_message *message, char *out, size_t size);
 void vs_message_json(const vs_message *message, double time_s, char *out, size_t size);
 #define VS_MESSAGE_JSON_MAX 65536
 
-// text as a JSON string with its quotes; UTF-8 stays as it is.
-void vs_json_quote(const char *text, char *out, size_t size);
+// Replaces in place what a terminal would obey: control characters, also those of UTF-8, become "?". For all that came
+// from elsewhere.
+void vs_text_clean(char *text);
 
 // "goal by yellow", "free ball in quadrant 2", ...
 void vs_event_text(const vs_event *event, char *out, size_t size);

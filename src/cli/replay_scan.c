@@ -1,9 +1,11 @@
 // Reads a log through, prints what was asked for, and sums up.
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+#include "json_text.h"
 #include "message_text.h"
 #include "replay.h"
 
@@ -60,7 +62,13 @@ static void learn(replay_summary *s, const vs_message *m) {
   }
 }
 
-static void print_clock(double time_s) { printf("%3d:%04.1f", (int)time_s / 60, time_s - 60 * ((int)time_s / 60)); }
+static void print_clock(double time_s) {
+  double minutes = floor(time_s / 60.0);
+  printf("%3.0f:%04.1f", minutes, time_s - 60.0 * minutes);
+}
+
+// Time stamps may be anything: their difference need not fit 64 bits.
+static double between_s(int64_t from_us, int64_t to_us) { return ((double)to_us - (double)from_us) * 1e-6; }
 
 static void print_message(const vs_message *m, double time_s, bool json, bool whole) {
   static char line[VS_MESSAGE_JSON_MAX];
@@ -74,17 +82,21 @@ static void print_message(const vs_message *m, double time_s, bool json, bool wh
     printf("  %2d : %-2d  %s\n", r->score[VS_BLUE], r->score[VS_YELLOW], line);
   } else {
     vs_message_text(m, line, sizeof line);
+    vs_text_clean(line);
     printf("%9.3f  %-15s  %s\n", time_s, vs_channel_name(m->channel), line);
   }
 }
 
 static void print_foreign(const vs_log_event *event, double time_s, bool json) {
   char name[512];
-  vs_json_quote(event->channel, name, sizeof name);
+  if (json)
+    vs_json_quote(event->channel, name, sizeof name);
+  else
+    vs_text_clean((snprintf(name, sizeof name, "%s", event->channel), name));
   if (json)
     printf("{\"t_s\": %.6f, \"channel\": %s, \"size\": %zu}\n", time_s, name, event->size);
   else
-    printf("%9.3f  %-15s  %zu bytes\n", time_s, event->channel, event->size);
+    printf("%9.3f  %-15s  %zu bytes\n", time_s, name, event->size);
 }
 
 vs_status replay_scan(vs_bus_log *log, const replay_def *def, replay_summary *out, vs_error *err) {
@@ -100,7 +112,7 @@ vs_status replay_scan(vs_bus_log *log, const replay_def *def, replay_summary *ou
     s = vs_bus_log_next(log, &event, &end, err);
     if (s != VS_OK || end) break;
     replay_channel *c = count(out, &event);
-    double time_s = (double)(event.utime_us - out->first_us) * 1e-6;
+    double time_s = between_s(out->first_us, event.utime_us);
     bool wanted = replay_wants(&def->wanted, event.channel);
     out->found_wanted |= wanted;
     vs_channel channel;
@@ -124,7 +136,7 @@ static void print_json(const char *path, const replay_summary *s) {
   char text[1024];
   vs_json_quote(path, text, sizeof text);
   printf("{\"summary\": {\"log\": %s, \"messages\": %lld, \"bytes\": %lld, \"seconds\": %.6f, \"matches\": %d, ", text,
-         (long long)s->events, (long long)s->bytes, (double)(s->last_us - s->first_us) * 1e-6, s->matches);
+         (long long)s->events, (long long)s->bytes, between_s(s->first_us, s->last_us), s->matches);
   if (s->have_game)
     printf("\"score\": [%d, %d], \"game_time_s\": %.3f, ", s->game.score[VS_BLUE], s->game.score[VS_YELLOW],
            s->game.time_s);
@@ -143,10 +155,14 @@ void replay_print_summary(const char *path, const replay_summary *s, bool json) 
     print_json(path, s);
     return;
   }
-  double seconds = (double)(s->last_us - s->first_us) * 1e-6;
+  double seconds = between_s(s->first_us, s->last_us);
   printf("\n%s: %lld messages, %.1f s, %.2f MB\n", path, (long long)s->events, seconds, (double)s->bytes * 1e-6);
   if (s->have_game) {
-    const char *blue = s->player[VS_BLUE], *yellow = s->player[VS_YELLOW];
+    char blue[VS_BUS_TEXT], yellow[VS_BUS_TEXT];
+    snprintf(blue, sizeof blue, "%s", s->player[VS_BLUE]);
+    snprintf(yellow, sizeof yellow, "%s", s->player[VS_YELLOW]);
+    vs_text_clean(blue);
+    vs_text_clean(yellow);
     printf("blue %s%s%d : %d%s%s yellow after %.1f s", blue, *blue ? " " : "", s->game.score[VS_BLUE],
            s->game.score[VS_YELLOW], *yellow ? " " : "", yellow, s->game.time_s);
     if (s->matches > 1) printf(" (the last of %d matches)", s->matches);
@@ -155,8 +171,11 @@ void replay_print_summary(const char *path, const replay_summary *s, bool json) 
   printf("\n%-20s %10s %8s %8s\n", "channel", "messages", "Hz", "kB/s");
   for (int i = 0; i < s->n_channels; i++) {
     const replay_channel *c = &s->channel[i];
+    char name[sizeof c->name];
     double per_second = seconds > 0.0 ? 1.0 / seconds : 0.0;
-    printf("%-20s %10lld %8.1f %8.2f", c->name, (long long)c->messages, (double)c->messages * per_second,
+    snprintf(name, sizeof name, "%s", c->name);
+    vs_text_clean(name);
+    printf("%-20s %10lld %8.1f %8.2f", name, (long long)c->messages, (double)c->messages * per_second,
            (double)c->bytes * per_second * 1e-3);
     if (c->refused) printf("  %lld not readable: other version of lcm_types, or damaged", (long long)c->refused);
     printf("\n");

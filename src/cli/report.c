@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "json_text.h"
+
 // One estimate as "56.0 [46.0, 66.0]" in a column of fixed width.
 static void cell(FILE *out, const vs_estimate *e, double scale, int digits, int width) {
   char text[64];
@@ -86,19 +88,6 @@ void vs_report_csv_row(FILE *out, const char *blue, const char *yellow, const vs
           s->mean_time_s);
 }
 
-void vs_report_json_text(FILE *out, const char *text) {
-  fputc('"', out);
-  for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
-    if (*c == '"' || *c == '\\')
-      fprintf(out, "\\%c", *c);
-    else if (*c < 0x20)
-      fprintf(out, "\\u%04x", *c);
-    else
-      fputc(*c, out);
-  }
-  fputc('"', out);
-}
-
 static void json_number(FILE *out, const char *name, double value) {
   if (isfinite(value))
     fprintf(out, "\"%s\": %.9g", name, value);
@@ -112,7 +101,7 @@ void vs_report_json_flags(FILE *out, const vs_match_flags *flags) {
           ", \"realism\": ",
           flags->drive, flags->rules, flags->placement, flags->seconds, flags->seed);
   if (flags->realism)
-    vs_report_json_text(out, flags->realism);
+    vs_json_put(out, flags->realism);
   else
     fprintf(out, "null");
 }

@@ -15,9 +15,8 @@ void vs_report_restarts_row(FILE *out, const char *against, const vs_series_summ
 void vs_report_csv_head(FILE *out);
 void vs_report_csv_row(FILE *out, const char *blue, const char *yellow, const vs_series_summary *summary);
 
-// JSON: a quoted text; "name": value pairs of the flags; an object for one match and for a summary. What is not a
+// JSON: "name": value pairs of the flags; an object for one match and for a summary. What is not a
 // number (an interval of no match) is null.
-void vs_report_json_text(FILE *out, const char *text);
 void vs_report_json_flags(FILE *out, const vs_match_flags *flags);
 void vs_report_json_match(FILE *out, const vs_match_result *match);
 void vs_report_json_matches(FILE *out, const vs_match_result *results, int n); // an array of those begun

@@ -48,6 +48,7 @@ static void hear(const char *channel, const uint8_t *data, size_t size, int64_t 
     vs_message_text(&s->message, r->last, sizeof r->last);
   else
     snprintf(r->last, sizeof r->last, "%s", err.text);
+  vs_text_clean(r->last);
 }
 
 static int compare(const void *a, const void *b) { return strcmp(((const row *)a)->name, ((const row *)b)->name); }
@@ -63,6 +64,7 @@ static void print_table(spy *s, double since_s, bool since_start, int cut) {
     char line[LAST_MAX + 64];
     snprintf(line, sizeof line, "%-18s %9lld %7.1f %8.2f  %s", r->name, (long long)r->messages, messages / since_s,
              bytes / since_s * 1e-3, r->last);
+    vs_text_clean(line);
     printf("%.*s\n", cut > 0 ? cut : (int)sizeof line, line);
     r->shown_messages = r->messages;
     r->shown_bytes = r->bytes;

@@ -13,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "child.h"
 #include "spy.h"
 #include "vsss/bus.h"
 #include "vsss/paths.h"
@@ -24,18 +25,12 @@ enum { PATH = 512, ARGUMENTS_MAX = 64 };
 
 // Runs a program, its standard output on our standard error; VS_FAIL: missing (names the package) or failed.
 static vs_status run(char *const argv[], const char *debian_package, vs_error *err) {
-  pid_t child = fork();
-  if (child == 0) {
-    dup2(STDERR_FILENO, STDOUT_FILENO);
-    execvp(argv[0], argv);
-    _exit(errno == ENOENT ? 127 : 126);
-  }
-  int status = 0;
-  if (child < 0 || waitpid(child, &status, 0) < 0) return vs_fail(err, VS_FAIL, "%s: %s", argv[0], strerror(errno));
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-    return vs_fail(err, VS_FAIL, "%s is missing: install %s", argv[0], debian_package);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    return vs_fail(err, VS_FAIL, "%s failed; what it said is above", argv[0]);
+  const vs_child_def def = {.argv = argv, .out = STDERR_FILENO};
+  pid_t child;
+  int failed = vs_child_start(&def, &child);
+  if (failed == ENOENT) return vs_fail(err, VS_FAIL, "%s is missing: install %s", argv[0], debian_package);
+  if (failed) return vs_fail(err, VS_FAIL, "%s: %s", argv[0], strerror(failed));
+  if (vs_child_wait(child) != 0) return vs_fail(err, VS_FAIL, "%s failed; what it said is above", argv[0]);
   return VS_OK;
 }
 

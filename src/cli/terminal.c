@@ -1,4 +1,6 @@
 // What a command shows on a terminal: errors, the progress line; and the interrupts it reacts to.
+#include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <pthread.h>
 #include <signal.h>
@@ -20,6 +22,24 @@ int vs_cli_error(const char *command, const vs_error *err) {
 void vs_cli_realtime(int priority) {
   vs_error err = {0};
   if (vs_realtime_try(priority, &err) != VS_OK) fprintf(stderr, "going on all the same: %s\n", err.text);
+}
+
+bool vs_cli_begin(void) {
+  signal(SIGPIPE, SIG_IGN);
+  const bool can_print = fcntl(STDOUT_FILENO, F_GETFD) >= 0;
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++) // opens the lowest that is free
+    if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDWR) < 0) return false;
+  if (!can_print) fprintf(stderr, "vsss: standard output is closed: send it to a file, or to /dev/null\n");
+  return can_print;
+}
+
+int vs_cli_end(const char *command, int status) {
+  errno = 0;
+  bool failed = fflush(stdout) != 0;
+  const char *why = failed && errno ? strerror(errno) : "not all that was printed could be written";
+  if (!failed && !ferror(stdout)) return status;
+  fprintf(stderr, "vsss %s: standard output: %s\n", command, why);
+  return status ? status : VS_FAIL;
 }
 
 static atomic_bool interrupted;
@@ -86,7 +106,7 @@ vs_status vs_cli_await_interrupts(void (*first)(void *context), void (*second)(v
   return VS_OK;
 }
 
-bool vs_cli_interrupted(void) { return interrupted; }
+bool vs_cli_interrupted(void) { return interrupted || ferror(stdout); }
 
 void vs_progress_start(vs_progress *progress) {
   *progress =

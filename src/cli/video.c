@@ -4,40 +4,22 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-extern char **environ;
+#include "child.h"
 
 struct vs_video {
-  char path[512];
+  char path[512], file[520]; // file: as ffmpeg takes it, whatever the name begins with
   size_t frame_bytes;
   pid_t ffmpeg;
   int pipe;       // raw frames
   FILE *messages; // what ffmpeg says
 };
-
-// ffmpeg gets its own process group, so that Ctrl-C lets us end the file properly.
-static int start(vs_video *v, char *const argv[], int frames_fd) {
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t attributes;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, frames_fd, STDIN_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, fileno(v->messages), STDERR_FILENO);
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  int failed = posix_spawnp(&v->ffmpeg, "ffmpeg", &actions, &attributes, argv, environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
-  return failed;
-}
 
 static void release(vs_video *v) {
   if (v->pipe >= 0) close(v->pipe);
@@ -45,13 +27,37 @@ static void release(vs_video *v) {
   free(v);
 }
 
+// Containers that hold H.264, by the ending that ffmpeg goes by.
+static bool is_container(const char *path) {
+  static const char *const endings[] = {".mp4", ".mkv", ".mov", ".avi"};
+  size_t length = strlen(path);
+  for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+    if (length > 4 && strcasecmp(path + length - 4, endings[i]) == 0) return true;
+  return false;
+}
+
+// Before the first frame, and without touching a video that is there.
+static vs_status check_path(const char *path, vs_error *err) {
+  if (!is_container(path))
+    return vs_fail(err, VS_USAGE, "%s: the name of a video ends in .mp4, .mkv, .mov or .avi", path);
+  bool was_there = access(path, F_OK) == 0;
+  int file = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (file < 0) return vs_fail(err, VS_FAIL, "%s: cannot be written: %s", path, strerror(errno));
+  close(file);
+  if (!was_there) unlink(path);
+  return VS_OK;
+}
+
 vs_status vs_video_open(const char *path, int width_px, int height_px, int fps, vs_video **out, vs_error *err) {
   *out = NULL;
   if (width_px % 2 || height_px % 2)
     return vs_fail(err, VS_USAGE, "video of %d x %d pixels: both must be even", width_px, height_px);
+  vs_status checked = check_path(path, err);
+  if (checked != VS_OK) return checked;
   vs_video *v = calloc(1, sizeof *v);
   if (!v) return vs_fail(err, VS_FAIL, "out of memory");
   snprintf(v->path, sizeof v->path, "%s", path);
+  snprintf(v->file, sizeof v->file, "file:%s", path);
   v->frame_bytes = (size_t)width_px * (size_t)height_px * 3;
   v->pipe = -1;
   v->messages = tmpfile();
@@ -63,7 +69,6 @@ vs_status vs_video_open(const char *path, int width_px, int height_px, int fps, 
   }
   v->pipe = ends[1];
   fcntl(v->pipe, F_SETPIPE_SZ, 1 << 20); // fewer switches between us and ffmpeg; the smaller default works too
-  signal(SIGPIPE, SIG_IGN);              // a dead ffmpeg is an error of write(2)
 
   char size[32], rate[16];
   snprintf(size, sizeof size, "%dx%d", width_px, height_px);
@@ -71,8 +76,10 @@ vs_status vs_video_open(const char *path, int width_px, int height_px, int fps, 
   char *argv[] = {"ffmpeg",     "-nostdin", "-y",       "-loglevel", "error", "-f",       "rawvideo", "-pixel_format",
                   "rgb24",      "-s",       size,       "-r",        rate,    "-i",       "-",        "-c:v",
                   "libx264",    "-preset",  "veryfast", "-crf",      "20",    "-pix_fmt", "yuv420p",  "-movflags",
-                  "+faststart", v->path,    NULL};
-  int failed = start(v, argv, ends[0]);
+                  "+faststart", v->file,    NULL};
+  // Its own process group, so that Ctrl-C lets us end the file properly.
+  const vs_child_def child = {.argv = argv, .in = ends[0], .err = fileno(v->messages), .own_group = true};
+  int failed = vs_child_start(&child, &v->ffmpeg);
   close(ends[0]);
   if (failed) {
     vs_status s = failed == ENOENT

@@ -8,8 +8,8 @@
 
 typedef struct vs_video vs_video;
 
-// Starts ffmpeg writing path (its ending chooses the container; H.264). Sizes are even. VS_FAIL: no ffmpeg (says what to
-// install), or path cannot be written (known at the latest in vs_video_close).
+// Starts ffmpeg writing path (its ending chooses the container; H.264). Sizes are even. VS_USAGE: another
+// ending than .mp4, .mkv, .mov or .avi; VS_FAIL: no ffmpeg (says what to install), or path cannot be written.
 vs_status vs_video_open(const char *path, int width_px, int height_px, int fps, vs_video **out, vs_error *err);
 // rgb: uint8_t[height_px][width_px][3], top row first.
 vs_status vs_video_frame(vs_video *video, const uint8_t *rgb, vs_error *err);

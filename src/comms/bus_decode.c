@@ -49,7 +49,7 @@ static bool decode_world(const uint8_t *data, int size, vs_message *m) {
       .duration_s = t.game_duration_s,
       .score = {t.score[0], t.score[1]},
       .last_event = {(vs_event_kind)kind_of(t.event_kind, VS_EVENT_KINDS), (vs_team)kind_of(t.event_team, VS_TEAMS),
-                     t.event_quadrant, t.event_time_s},
+                     clip(t.event_quadrant, 4), t.event_time_s},
   };
   m->as.world.asks_team = t.asks_team >= 0 && t.asks_team < VS_TEAMS ? t.asks_team : -1;
   return true;
@@ -74,7 +74,7 @@ static bool decode_referee(const uint8_t *data, int size, vs_message *m) {
   if (vsss_referee_t_decode(data, 0, size, &t) != size) return false;
   STAMP_FROM(m, &t);
   m->as.referee = (vs_msg_referee){
-      .event = {(vs_event_kind)kind_of(t.kind, VS_EVENT_KINDS), (vs_team)kind_of(t.team, VS_TEAMS), t.quadrant,
+      .event = {(vs_event_kind)kind_of(t.kind, VS_EVENT_KINDS), (vs_team)kind_of(t.team, VS_TEAMS), clip(t.quadrant, 4),
                 t.time_s},
       .duration_s = t.duration_s,
       .score = {t.score[0], t.score[1]},

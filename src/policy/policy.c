@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "policy_internal.h"
 #include "vsss/field.h"
@@ -105,6 +106,13 @@ static const scheme *find_scheme(const char *uri) {
 static vs_status unknown_scheme(const char *uri, vs_error *err) {
   char known[256];
   vs_player_schemes(known, sizeof known);
+  for (const scheme *s = table; s->name; s++) // "emc" for "emc:"
+    if (strlen(uri) + 1 == strlen(s->name) && strncasecmp(uri, s->name, strlen(uri)) == 0)
+      return vs_fail(err, VS_USAGE, "'%.120s' is no player: did you mean '%s'? known: %s", uri, s->name, known);
+  const char *ending = strrchr(uri, '.');
+  if (ending && (!strcmp(ending, ".onnx") || !strcmp(ending, ".so")))
+    return vs_fail(err, VS_USAGE, "'%.120s' is no player: did you mean '%s:%.120s'?", uri,
+                   ending[1] == 'o' ? "onnx" : "plugin", uri);
   return vs_fail(err, VS_USAGE, "'%.120s' is no player; known: %s", uri, known);
 }
 

@@ -39,12 +39,20 @@ static void a_path_that_cannot_be_written_is_an_error_naming_it(void **state) {
   if (!have_ffmpeg()) skip();
   vs_video *v;
   vs_error err = {0};
-  vs_status s = vs_video_open("/nonexistent/out.mp4", 64, 48, 30, &v, &err);
-  for (int i = 0; s == VS_OK && i < 3; i++) s = vs_video_frame(v, &picture[0][0][0], &err);
-  vs_error at_close = {0};
-  assert_int_equal(vs_video_close(v, &at_close), VS_FAIL);
-  assert_non_null(strstr(at_close.text, "/nonexistent/out.mp4"));
-  assert_non_null(strstr(at_close.text, "No such file"));
+  assert_int_equal(vs_video_open("/nonexistent/out.mp4", 64, 48, 30, &v, &err), VS_FAIL);
+  assert_non_null(strstr(err.text, "/nonexistent/out.mp4"));
+  assert_non_null(strstr(err.text, "No such file"));
+}
+
+static void an_ending_that_is_no_video_is_refused(void **state) {
+  (void)state;
+  static const char *const names[] = {"x.gif", "x", ".mp4", "mp4", "x.mp4.png"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    vs_video *v;
+    vs_error err = {0};
+    if (vs_video_open(names[i], 64, 48, 30, &v, &err) != VS_USAGE || !strstr(err.text, ".mp4, .mkv, .mov or .avi"))
+      fail_msg("%s: %s", names[i], err.text);
+  }
 }
 
 static void without_ffmpeg_the_error_says_what_to_install(void **state) {
@@ -72,6 +80,7 @@ static void odd_sizes_are_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(frames_become_a_video_of_their_number_and_size),
+      cmocka_unit_test(an_ending_that_is_no_video_is_refused),
       cmocka_unit_test(a_path_that_cannot_be_written_is_an_error_naming_it),
       cmocka_unit_test(without_ffmpeg_the_error_says_what_to_install),
       cmocka_unit_test(odd_sizes_are_refused),
