@@ -49,6 +49,8 @@ typedef struct vs_sim_params {
   double robot_mass_scale;                           // 1
   double ball_mass_scale, ball_rolling_scale;        // 1, 1
   double ball_restitution;                           // at walls, and 2/3 of it at robots; 0.6
+  double accelerate_mps2, brake_mps2;                // bounds of a wheel's rim speed, away from and towards 0; 0: none
+  double servo_scale;                                // of the servo's gain and torque limit; 1
   double push_per_s, push_mps; // random shoves: how often each robot gets one, and its largest change of velocity; 0, 0
   uint64_t push_seed;
 } vs_sim_params;

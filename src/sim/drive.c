@@ -99,8 +99,9 @@ static void slide(traction *t, wheel_state wheel[SIDES]) {
   }
 }
 
-static double motor_torque(const wheel_state *wheel) {
-  return vs_clamp(SERVO_GAIN_NMSPRAD * (wheel->target_radps - wheel->speed_radps), -SERVO_LIMIT_NM, SERVO_LIMIT_NM);
+static double motor_torque(const wheel_state *wheel, double scale) {
+  double limit = scale * SERVO_LIMIT_NM;
+  return vs_clamp(scale * SERVO_GAIN_NMSPRAD * (wheel->target_radps - wheel->speed_radps), -limit, limit);
 }
 
 static void step_planar_robot(vs_sim *sim, int index) {
@@ -131,7 +132,7 @@ static void step_planar_robot(vs_sim *sim, int index) {
   t.keep_s = keep * sideways;
   for (int side = LEFT; side < SIDES; side++) {
     double rim = t.radius * wheel[side].speed_radps;
-    t.rim[side] = rim + t.dt * t.radius * motor_torque(&wheel[side]) / WHEEL_INERTIA_KGM2;
+    t.rim[side] = rim + t.dt * t.radius * motor_torque(&wheel[side], sim->params.servo_scale) / WHEEL_INERTIA_KGM2;
     t.keep[side] = keep * (u + (side == LEFT ? -1 : 1) * t.half_track * v[2] - rim);
   }
   double load[SIDES];
@@ -149,11 +150,24 @@ static void step_planar_robot(vs_sim *sim, int index) {
   }
 }
 
+// The way to a target within the bounds of acceleration: away from 0 by at most up, towards it by at most down.
+static double ramp(double from, double to, double up, double down) {
+  bool brakes = from != 0 && (from > 0 ? to < from : to > from);
+  if (!brakes) return vs_clamp(to, from - up, from + up);
+  double slower = from > 0 ? fmax(from - down, fmax(to, 0)) : fmin(from + down, fmin(to, 0));
+  return slower;
+}
+
 void vs_drive_step(vs_sim *sim, const double target[ROBOTS][SIDES]) {
+  const vs_sim_params *p = &sim->params;
+  double per_step = sim->mj->opt.timestep / VS_WHEEL_RADIUS_M;
   for (int i = 0; i < ROBOTS; i++) {
     for (int side = LEFT; side < SIDES; side++) {
       wheel_state *wheel = &sim->wheel[i][side];
-      wheel->target_radps += sim->lag * (target[i][side] - wheel->target_radps);
+      double next = wheel->target_radps + sim->lag * (target[i][side] - wheel->target_radps);
+      if (p->accelerate_mps2 > 0)
+        next = ramp(wheel->target_radps, next, per_step * p->accelerate_mps2, per_step * p->brake_mps2);
+      wheel->target_radps = next;
       if (sim->model->drive == VS_DRIVE_CONTACT) {
         sim->data->ctrl[sim->model->robot[i].servo[side]] = wheel->target_radps;
       }

@@ -17,9 +17,10 @@
 #define SKID_DISTANCE_M 0.033
 #define COM_HEIGHT_M    0.0348 // Table 1: block from 0.5 to 6.5 cm, axles at 3 cm
 
-#define GRAVITY_MPS2   9.81
-#define BALL_FRICTION  0.3    // sliding; sources in models/vsss_contact.xml, class ball_floor
-#define BALL_ROLLING_M 6.1e-4 // rolling: 0.20 m/s2
+#define GRAVITY_MPS2           9.81
+#define BALL_FRICTION          0.3    // sliding; sources in models/vsss_contact.xml, class ball_floor
+#define BALL_ROLLING_M         6.1e-4 // rolling: 5/7 g times this over the radius
+#define BALL_DECELERATION_MPS2 0.20
 
 // sat(command) * gain, nothing inside the dead zone (field.md 6.3).
 double vs_drive_target(const vs_sim_params *params, int robot, int side, double command_radps);

@@ -9,7 +9,7 @@
 
 static bool nominal(const vs_sim_params *p) {
   if (p->floor_friction_scale != 1 || p->robot_mass_scale != 1 || p->ball_mass_scale != 1) return false;
-  if (p->ball_rolling_scale != 1 || p->ball_restitution != NOMINAL_RESTITUTION) return false;
+  if (p->ball_rolling_scale != 1 || p->ball_restitution != NOMINAL_RESTITUTION || p->servo_scale != 1) return false;
   for (int i = 0; i < ROBOTS; i++) {
     int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE;
     const double *com = p->com_offset_m[team][index];
@@ -66,6 +66,13 @@ static void set_wheel(mjModel *own, const mjModel *from, int wheel_body, double 
   own->geom_rbound[geom] = from->geom_rbound[geom] * radius_scale;
 }
 
+static void set_servo(mjModel *own, const mjModel *from, int servo, double scale) {
+  own->actuator_gainprm[mjNGAIN * servo] = from->actuator_gainprm[mjNGAIN * servo] * scale;
+  own->actuator_biasprm[mjNBIAS * servo + 2] = from->actuator_biasprm[mjNBIAS * servo + 2] * scale;
+  for (int i = 0; i < 2; i++)
+    own->actuator_forcerange[2 * servo + i] = from->actuator_forcerange[2 * servo + i] * scale;
+}
+
 static void set_robot(vs_sim *sim, int i) {
   const mjModel *from = sim->model->mj;
   const vs_sim_params *p = &sim->params;
@@ -79,6 +86,7 @@ static void set_robot(vs_sim *sim, int i) {
   for (int side = LEFT; side < SIDES; side++) {
     int wheel = from->dof_bodyid[address->wheel_qvel[side]];
     scale_body(sim->own, from, wheel, p->robot_mass_scale);
+    set_servo(sim->own, from, address->servo[side], p->servo_scale);
     set_wheel(sim->own, from, wheel, p->wheel_radius_scale[team][index], p->track_scale[team][index]);
   }
 }

@@ -15,7 +15,8 @@ vs_sim_params vs_sim_params_default(void) {
                           .robot_mass_scale = 1,
                           .ball_mass_scale = 1,
                           .ball_rolling_scale = 1,
-                          .ball_restitution = NOMINAL_RESTITUTION};
+                          .ball_restitution = NOMINAL_RESTITUTION,
+                          .servo_scale = 1};
   for (int i = 0; i < ROBOTS; i++) {
     int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE;
     params.wheel_gain[team][index][LEFT] = params.wheel_gain[team][index][RIGHT] = 1;
