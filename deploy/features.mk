@@ -38,6 +38,26 @@ $(B)/gen/lcm/%.o: build/gen/lcm/%.c
 $(LCM_SRC:%.c=$(B)/%.o): build/gen/lcm/.made
 endif
 
+# The league's datagrams: src/league_net/NAME.proto; protoc-c makes build/gen/league/NAME.pb-c.{c,h}.
+FEATURE_EXCLUDE += $(call choose,PROTOBUFC,src/league_net/messages.c)
+ifneq ($(HAVE_PROTOBUFC),)
+PROTO_SRC := $(wildcard src/league_net/*.proto)
+PROTO_NAMES := $(PROTO_SRC:src/league_net/%.proto=%)
+FEATURE_LIBS += -lprotobuf-c
+FEATURE_OBJ += $(PROTO_NAMES:%=$(B)/gen/league/%.pb-c.o)
+GENERATED += build/gen/league/.made
+build/gen/league/.made: $(PROTO_SRC)
+	@mkdir -p $(@D)
+	@echo '  PROTO $(PROTO_SRC)'
+	$(Q)protoc-c --c_out=$(@D) --proto_path=src/league_net $(PROTO_SRC)
+	@touch $@
+$(PROTO_NAMES:%=build/gen/league/%.pb-c.c): build/gen/league/.made ;
+$(B)/gen/league/%.o: build/gen/league/%.c
+	@mkdir -p $(@D)
+	$(Q)$(CC) -std=gnu11 -w $(OPT) -fPIC $(SAN) -Ibuild/gen/league -c -o $@ $<
+$(B)/src/league_net/messages.o: build/gen/league/.made
+endif
+
 # The robots' firmware, which the rig runs; plain C that no other part of the program is in.
 FEATURE_OBJ += $(B)/deploy/firmware/firmware.o
 

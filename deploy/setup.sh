@@ -46,6 +46,7 @@ libmujoco-dev       physics
 liblcm-dev          messages between programs
 liblcm-bin          lcm-gen, lcm-logger, lcm-logplayer
 liblcm-java libjchart2d-java default-jre default-jdk-headless  ./vsss spy (lcm-spy is a Java program)
+libprotobuf-c-dev protobuf-c-compiler  the simulation league's network messages (serve)
 libopencv-dev       cameras, calibration, images
 libapriltag-dev     robot tags
 libegl-dev libgl-dev libegl-mesa0 libgl1-mesa-dri  off-screen pictures
@@ -56,6 +57,7 @@ libopenblas-dev     the same where there is no oneDNN, and its baseline in the b
 libtorch-dev        --learner torch, oracle of the learner's tests
 libopenmpi-dev openmpi-bin  training on many machines
 libcmocka-dev zlib1g-dev    tests
+python3             tests: a client of the league written from its protocol alone
 "
 if [ $release = trixie ]; then
   packages="$packages
