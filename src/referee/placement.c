@@ -83,21 +83,22 @@ static void fixed_poses(const restart *r, vs_pose pose[VS_TEAMS][VS_TEAM_SIZE]) 
 #define ROOT_2        1.4142135623730951
 #define ROBOT_CLEAR_M (VS_ROBOT_SIZE_M / 2 * ROOT_2 + 0.005)
 
-// Where robots that have no task at this restart may stand, wholly. t: 0 kicker, 1 receiver.
-static bool rules_allow(const restart *r, int t, double x_m, double y_m) {
+// Where robots that have no task at this restart may stand, clear_m from every line that bounds it. t: 0 kicker, 1
+// receiver.
+static bool rules_allow(const restart *r, int t, double x_m, double y_m, double clear_m) {
   double x_side = r->ball_x_m > 0 ? 1 : -1, y_side = r->ball_y_m > 0 ? 1 : -1;
   double area_x_m = -(VS_FIELD_HALF_LENGTH_M - VS_AREA_DEPTH_M);
   switch (r->kind) {
   case VS_EVENT_NONE: return true;
   case VS_EVENT_PENALTY: // behind the half line, as seen from the ball
-    return x_m <= -ROBOT_CLEAR_M;
+    return x_m <= -clear_m;
   case VS_EVENT_FREE_BALL: // out of the ball's quadrant
-    return x_side * x_m <= -ROBOT_CLEAR_M || y_side * y_m <= -ROBOT_CLEAR_M;
+    return x_side * x_m <= -clear_m || y_side * y_m <= -clear_m;
   case VS_EVENT_GOAL_KICK: // out of the kicker's area
-    return x_m >= area_x_m + ROBOT_CLEAR_M || fabs(y_m) >= VS_AREA_HALF_WIDTH_M + ROBOT_CLEAR_M;
+    return x_m >= area_x_m + clear_m || fabs(y_m) >= VS_AREA_HALF_WIDTH_M + clear_m;
   default: // kick-off: own half, receivers outside the circle
-    if (t == 0) return x_m <= -ROBOT_CLEAR_M;
-    return x_m >= ROBOT_CLEAR_M && hypot(x_m, y_m) >= VS_CIRCLE_RADIUS_M + ROBOT_CLEAR_M;
+    if (t == 0) return x_m <= -clear_m;
+    return x_m >= clear_m && hypot(x_m, y_m) >= VS_CIRCLE_RADIUS_M + clear_m;
   }
 }
 
@@ -125,7 +126,7 @@ static vs_pose draw_anywhere(const restart *r, int t, vs_rng *rng) {
   const double corner_m = VS_FIELD_HALF_LENGTH_M + VS_FIELD_HALF_WIDTH_M - VS_CORNER_M - ROOT_2 * ROBOT_CLEAR_M;
   for (;;) { // at least a third of the field is allowed in every case
     double x_m = vs_rng_range(rng, -x_free_m, x_free_m), y_m = vs_rng_range(rng, -y_free_m, y_free_m);
-    if (fabs(x_m) + fabs(y_m) <= corner_m && rules_allow(r, t, x_m, y_m)) return (vs_pose){x_m, y_m, 0};
+    if (fabs(x_m) + fabs(y_m) <= corner_m && rules_allow(r, t, x_m, y_m, ROBOT_CLEAR_M)) return (vs_pose){x_m, y_m, 0};
   }
 }
 
@@ -218,4 +219,67 @@ void vs_place(vs_placement_mode mode, const vs_event *event, const vs_world *bef
     for (int i = 0; i < VS_TEAM_SIZE; i++) view.robot[t][i] = (vs_robot){.pose = pose[t][i], .valid = true};
   view.ball = (vs_ball){.x_m = r.ball_x_m, .y_m = r.ball_y_m, .z_m = VS_BALL_RADIUS_M, .valid = true};
   vs_world_for_team(&view, r.kicker, out);
+}
+
+// --- what teams place themselves ---------------------------------------------------------------------------------------
+
+#define NEAR_M 0.03 // of a point that the rules name
+
+// The robot that the restart is about stands where it must. False where none of team t has to.
+static bool has_task(const restart *r, int t, const vs_pose *p) {
+  switch (r->kind) {
+  case VS_EVENT_FREE_BALL:
+    return vs_distance_m(p->x_m, p->y_m, r->ball_x_m + (t == 0 ? -1 : 1) * VS_FREE_BALL_ROBOT_M, r->ball_y_m) <= NEAR_M;
+  case VS_EVENT_PENALTY:
+    if (t == 0) return p->x_m < r->ball_x_m && vs_distance_m(p->x_m, p->y_m, r->ball_x_m, r->ball_y_m) <= 0.3 + NEAR_M;
+    return p->x_m >= KEEPER_ON_LINE_M - NEAR_M && fabs(p->y_m) <= VS_GOAL_HALF_WIDTH_M;
+  case VS_EVENT_GOAL_KICK:
+    return t == 0 && p->x_m <= -(VS_FIELD_HALF_LENGTH_M - VS_AREA_DEPTH_M) && fabs(p->y_m) <= VS_AREA_HALF_WIDTH_M;
+  default: return t == 0 && p->x_m <= 0 && hypot(p->x_m, p->y_m) <= VS_CIRCLE_RADIUS_M + NEAR_M;
+  }
+}
+
+static bool task_is_due(const restart *r, int t) {
+  return r->kind == VS_EVENT_FREE_BALL || r->kind == VS_EVENT_PENALTY || t == 0;
+}
+
+// A keeper in its own area may stay where it is.
+static bool keeps(const restart *r, int t, const vs_pose *p) {
+  double own = t == 0 ? -1 : 1;
+  bool in_area = own * p->x_m >= VS_FIELD_HALF_LENGTH_M - VS_AREA_DEPTH_M && fabs(p->y_m) <= VS_AREA_HALF_WIDTH_M;
+  return r->kind == VS_EVENT_FREE_BALL && in_area;
+}
+
+static vs_status check_spot(const vs_pose *p, int i, const restart *r, vs_error *err) {
+  const double x_free_m = VS_FIELD_HALF_LENGTH_M - VS_ROBOT_SIZE_M / 2 + 0.001,
+               y_free_m = VS_FIELD_HALF_WIDTH_M - VS_ROBOT_SIZE_M / 2 + 0.001;
+  if (!(fabs(p->x_m) <= x_free_m && fabs(p->y_m) <= y_free_m && isfinite(p->theta_rad)))
+    return vs_fail(err, VS_FAIL, "robot %d at %.3f, %.3f m is not inside the field", i, p->x_m, p->y_m);
+  if (vs_distance_m(p->x_m, p->y_m, r->ball_x_m, r->ball_y_m) < VS_ROBOT_SIZE_M / 2 + VS_BALL_RADIUS_M)
+    return vs_fail(err, VS_FAIL, "robot %d stands on the ball's place", i);
+  return VS_OK;
+}
+
+vs_status vs_placement_check(const vs_event *event, vs_team team, const vs_pose pose[VS_TEAM_SIZE], vs_error *err) {
+  restart r;
+  if (!restart_of(event, &r)) return vs_fail(err, VS_FAIL, "a %s places nothing", vs_event_name(event->kind));
+  int t = team == r.kicker ? 0 : 1, tasks = 0, keepers = 0;
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    vs_pose p = r.kicker == VS_YELLOW ? vs_pose_rotate_pi(pose[i]) : pose[i];
+    vs_status s = check_spot(&p, i, &r, err);
+    if (s != VS_OK) return s;
+    for (int k = 0; k < i; k++)
+      if (vs_distance_m(pose[i].x_m, pose[i].y_m, pose[k].x_m, pose[k].y_m) < VS_ROBOT_SIZE_M)
+        return vs_fail(err, VS_FAIL, "robots %d and %d overlap", k, i);
+    if (has_task(&r, t, &p) && tasks == 0)
+      tasks++;
+    else if (keeps(&r, t, &p) && keepers == 0)
+      keepers++;
+    else if (!rules_allow(&r, t, p.x_m, p.y_m, -0.001))
+      return vs_fail(err, VS_FAIL, "robot %d at %.3f, %.3f m is where a %s allows none", i, pose[i].x_m, pose[i].y_m,
+                     vs_event_name(event->kind));
+  }
+  if (task_is_due(&r, t) && tasks == 0)
+    return vs_fail(err, VS_FAIL, "no robot stands where the %s wants one", vs_event_name(event->kind));
+  return VS_OK;
 }
