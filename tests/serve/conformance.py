@@ -1,0 +1,167 @@
+"""Checks `vsss serve` as its clients see it: conformance.py CASE PORT_OFFSET. Says what is wrong and exits with 1."""
+import collections
+import math
+import sys
+
+from league_client import *
+
+NAMES = ["free kick", "penalty", "goal kick", "free ball", "kick-off", "stop", "game on", "halt"]
+
+
+def check(what, ok):
+    if not ok:
+        sys.exit("conformance: " + what)
+
+
+def near(a, b, tolerance):
+    return abs(a - b) <= tolerance
+
+
+def check_world(world, before, steps):
+    check("a datagram of %d bytes: clients read 512" % world.size, world.size <= 512)
+    check("robots %s" % [sorted(r) for r in world.robots], all(sorted(r) == [0, 1, 2] for r in world.robots))
+    check("field %s" % world.field, world.field[:4] == [1.3, 1.5, 0.4, 0.1])
+    check("a number that is none", all(math.isfinite(v) for v in world.ball))
+    if before:
+        check("steps %d then %d" % (before.step, world.step), world.step - before.step in steps)
+
+
+def full_match(net):
+    """Two teams in one process, in step with the server: blue attacks and places itself at kick-offs, yellow never places;
+    it gets out of the way, and
+    its keeper keeps from blue's third goal on."""
+    calls, run = [], []  # every datagram; [call, count] without the repeats
+    last, goals, kick_offs, placed_checks = None, (0, 0), collections.Counter(), 0
+    expected = None  # the kick-off whose placing is to be checked
+    place = {0: (-0.70, 0.05, 90.0), 1: (-0.15, 0.0, 0.0), 2: (-0.30, 0.25, -30.0)}
+    play = False
+    while True:
+        world = net.world()
+        check("no world for 30 s", world is not None)
+        check_world(world, last, (16, 17))
+        new_goals = (world.goals[0] - goals[0], world.goals[1] - goals[1])
+        check("goals went from %s to %s" % (goals, world.goals), new_goals in ((0, 0), (1, 0), (0, 1)))
+        if new_goals != (0, 0):
+            at = last.ball if last else world.ball
+            check("goal with the ball at %s" % world.ball[:2], abs(world.ball[0]) > 0.7 or abs(at[0]) > 0.7)
+        goals, last = world.goals, world
+        for call in net.calls():
+            if run and (run[-1][0].foul, run[-1][0].team, run[-1][0].time) == (call.foul, call.team, call.time):
+                run[-1][1] += 1
+                continue
+            if run:
+                check("%s was sent %d times" % (NAMES[run[-1][0].foul], run[-1][1]), run[-1][1] == 10)
+            run.append([call, 1])
+            play = call.foul == GAME_ON
+            if call.foul == KICKOFF:
+                kick_offs[call.team] += 1
+                expected = call.team
+                net.send(placement(BLUE, place if call.team == BLUE else {i: (x - 0.2 * (i == 1), y, d) for i, (x, y, d) in place.items()}), net.placer)
+            elif call.foul not in (STOP, GAME_ON, HALT):
+                expected = None
+        if run and run[-1][0].foul == STOP and run[-1][1] == 3 and expected is not None:
+            blue, yellow = world.robots
+            check("kick-off without the ball in the middle: %s" % world.ball[:2], math.hypot(*world.ball[:2]) < 0.005)
+            for i, (x, y, d) in place.items():
+                x -= 0.2 * (i == 1 and expected != BLUE)
+                turn = math.remainder(blue[i].theta - math.radians(d), 2 * math.pi)
+                check("blue %d was placed at %.3f %.3f %.2f" % (i, blue[i].x, blue[i].y, blue[i].theta),
+                      near(blue[i].x, x, 0.01) and near(blue[i].y, y, 0.01) and near(turn, 0, 0.05))
+            # Nobody placed yellow: keeper, attacker, support of the default kick-off, seen from +x.
+            for i, x in enumerate((0.675, 0.2, 0.4)):
+                check("yellow %d stands at %.3f %.3f" % (i, yellow[i].x, yellow[i].y),
+                      near(yellow[i].x, x, 0.01) and near(yellow[i].y, 0, 0.01))
+            expected = None
+            placed_checks += 1
+        if run and run[-1][0].foul == HALT and run[-1][1] == 10:
+            break
+        if play:
+            blue = world.robots[0]
+            goal_y = max(-0.15, min(0.15, world.ball[1]))
+            net.send(commands(BLUE, {0: drive(blue[0], -0.68, goal_y), 1: attack(blue[1], world.ball, 0.85), 2: drive(blue[2], -0.2, -0.3)}))
+            net.send(commands(YELLOW, {i: drive(r, (0.69, 0.3, 0.3)[i], (goal_y if goals[0] > 2 else 0.5, 0.5, -0.5)[i]) for i, r in world.robots[1].items()}))
+        else:
+            for team in (BLUE, YELLOW):
+                net.send(commands(team, {i: (0.0, 0.0) for i in range(3)}))
+        if last.step % 1000 < 16:  # while the server's referee is in charge nobody else may place
+            net.send(replacement(ball=(0.5, 0.5, 0.0, 0.0)))
+    fouls = [r[0].foul for r in run]
+    check("calls begin with %s" % [NAMES[f] for f in fouls[:3]], fouls[:3] == [KICKOFF, STOP, GAME_ON])
+    check("the first kick-off is not blue's", run[0][0].team == BLUE and run[0][0].half == 1)
+    for before, after in zip(fouls, fouls[1:]):
+        allowed = {STOP: (GAME_ON,), GAME_ON: (PENALTY, GOAL_KICK, FREE_BALL, KICKOFF, HALT)}.get(before, (STOP,))
+        check("%s follows %s" % (NAMES[after], NAMES[before]), after in allowed)
+    check("blue scored nothing", goals[0] >= 1)
+    check("kick-offs %s for %s goals" % (dict(kick_offs), goals), kick_offs[YELLOW] == goals[0] + 1)  # and the second half's
+    check("no kick-off was looked at", placed_checks >= 2)
+    check("halves %s" % {r[0].half for r in run}, {r[0].half for r in run} == {1, 2})
+    print("conformance: %d : %d, %d calls" % (goals[0], goals[1], len(run)))
+
+
+def settle(net, send, frames, steps):
+    """Answers so many worlds with the same datagrams; returns the last world."""
+    last = None
+    for _ in range(frames):
+        world = net.world()
+        check("no world for 30 s", world is not None)
+        check_world(world, last, steps)
+        last = world
+        for data, to in send:
+            net.send(data, to)
+    return last
+
+
+def free_play(net, radians, team_ports, hz):
+    """Without a referee: replacements, saturation, what is not a number, a held command, goals."""
+    steps = (1,) if radians else (16, 17)
+    to = {BLUE: team_ports[0], YELLOW: team_ports[1]} if team_ports else {BLUE: None, YELLOW: None}
+    idle = [(commands(t, {i: (0.0, 0.0) for i in range(3)}), to[t]) for t in (BLUE, YELLOW)]
+    net.catch_up()
+    settle(net, idle, 10, steps)
+    turn = math.pi / 2 if radians else 90.0
+    park = [(BLUE, 0, -0.6, -0.5, 0.0), (BLUE, 1, -0.6, 0.5, 0.0), (BLUE, 2, -0.3, -0.5, 0.0),
+            (YELLOW, 0, 0.6, 0.5, turn), (YELLOW, 1, 0.6, -0.5, 0.0), (YELLOW, 2, 0.3, 0.5, 0.0)]
+    net.send(replacement((0.2, -0.1, 0.0, 0.0), park))
+    world = settle(net, idle, 5, steps)
+    check("the ball went to %s" % world.ball[:2], near(world.ball[0], 0.2, 0.005) and near(world.ball[1], -0.1, 0.005))
+    check("yellow 0 turned to %.2f" % world.robots[1][0].theta, near(world.robots[1][0].theta, math.pi / 2, 0.03))
+    check("blue 2 went to %.2f" % world.robots[0][2].x, near(world.robots[0][2].x, -0.3, 0.01))
+    # Faster than any wheel: as fast as it goes, straight ahead, not refused.
+    fast = [(commands(BLUE, {0: (2000.0, 2000.0), 1: (442.0, -442.0)}), to[BLUE]), idle[1]]
+    world = settle(net, fast, hz // 2, steps)
+    speed = world.robots[0][0].vx
+    check("2000 rad/s drives at %.2f m/s" % speed, 0.4 < speed < 1.5)
+    check("it drove a curve: y %.3f" % world.robots[0][0].y, near(world.robots[0][0].y, -0.5, 0.03))
+    check("442 rad/s turns at %.1f rad/s" % world.robots[0][1].omega, world.robots[0][1].omega < -5)
+    # Not a number: dropped, the command before it holds.
+    nan = [(commands(BLUE, {0: (math.nan, 10.0), 1: (0.0, 0.0)}), to[BLUE]), idle[1]]
+    world = settle(net, nan, 6, steps)
+    check("not a number stopped it: %.2f m/s" % world.robots[0][0].vx, world.robots[0][0].vx > 0.3)
+    settle(net, idle, hz, steps)
+    # A shot into each goal is counted.
+    for shot, expected in (((0.6, 0.0, 2.0, 0.0), (1, 0)), ((-0.6, 0.0, -2.0, 0.0), (1, 1))):
+        net.send(replacement(shot))
+        world = settle(net, idle, hz // 2, steps)
+        check("goals %s after a shot, expected %s" % (world.goals, expected), world.goals == expected)
+    if team_ports:  # a team's port takes that team's commands only, the replacement port none
+        wrong = [(commands(BLUE, {0: (30.0, 30.0)}), to[YELLOW]), (commands(BLUE, {0: (30.0, 30.0)}), None)]
+        world = settle(net, wrong + idle, hz // 2, steps)
+        check("blue was driven through another port", abs(world.robots[0][0].vx) < 0.02)
+    print("conformance: free play")
+
+
+def main():
+    case, offset = sys.argv[1], int(sys.argv[2])
+    net = Network(offset)
+    net.send(commands(BLUE, {0: (0.0, 0.0)}))
+    if case == "match":
+        full_match(net)
+    elif case == "firasim":
+        free_play(net, False, None, 60)
+    elif case == "travesim":
+        free_play(net, True, (("127.0.0.1", 20013 + offset), ("127.0.0.1", 20012 + offset)), 100)
+    else:
+        sys.exit("conformance: no case '%s'" % case)
+
+
+main()
