@@ -336,6 +336,41 @@ static void open_play_is_legal_and_a_third_of_it_at_the_walls(void **state) {
   assert_true(fastest_mps > 0.95 && fastest_mps <= VS_OPEN_PLAY_MPS);
 }
 
+// Teams may also place themselves: what the referee itself places passes, and a robot out of bounds does not.
+static void own_placements_are_checked_against_each_restart(void **state) {
+  (void)state;
+  const struct {
+    vs_event_kind kind;
+    int quadrants;
+    double x_m, y_m; // where no robot of the kicker (attacking +x) but its taker may stand
+  } row[] = {{VS_EVENT_KICK_OFF, 0, 0.5, 0.5},
+             {VS_EVENT_PENALTY, 0, 0.2, 0.4},
+             {VS_EVENT_FREE_BALL, 4, 0, 0},
+             {VS_EVENT_GOAL_KICK, 4, -0.65, -0.1}};
+  for (int k = 0; k < 4; k++)
+    for (int team = 0; team < VS_TEAMS; team++)
+      for (int q = row[k].quadrants ? 1 : 0; q <= row[k].quadrants; q++) {
+        vs_event event = {.kind = row[k].kind, .team = (vs_team)team, .quadrant = q};
+        vs_world w = placed(VS_PLACEMENT_PAPER, row[k].kind, (vs_team)team, q, NULL);
+        vs_pose pose[VS_TEAM_SIZE];
+        for (int t = 0; t < VS_TEAMS; t++) {
+          for (int i = 0; i < VS_TEAM_SIZE; i++) pose[i] = w.robot[t][i].pose;
+          assert_ok(vs_placement_check(&event, (vs_team)t, pose, err));
+        }
+        for (int i = 0; i < VS_TEAM_SIZE; i++) pose[i] = w.robot[team][i].pose;
+        pose[2] = (vs_pose){row[k].x_m, row[k].y_m, 0};
+        if (team == VS_YELLOW) pose[2] = vs_pose_rotate_pi(pose[2]);
+        if (row[k].kind == VS_EVENT_FREE_BALL) // in the ball's quadrant, not beside the mark
+          pose[2] = (vs_pose){w.ball.x_m > 0 ? 0.2 : -0.2, w.ball.y_m > 0 ? 0.1 : -0.1, 0};
+        vs_error err = {0};
+        assert_int_equal(vs_placement_check(&event, (vs_team)team, pose, &err), VS_FAIL);
+        if (!strstr(err.text, "robot 2 at")) fail_msg("%s", err.text);
+      }
+  vs_event end = {.kind = VS_EVENT_END};
+  vs_pose any[VS_TEAM_SIZE] = {{0}};
+  assert_int_equal(vs_placement_check(&end, VS_BLUE, any, NULL), VS_FAIL);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(kick_off_stands_on_the_middle_line_of_the_field),
@@ -346,6 +381,7 @@ int main(void) {
       cmocka_unit_test(event_without_a_placement_changes_nothing),
       cmocka_unit_test(everything_is_placed_at_rest_and_the_clock_goes_on),
       cmocka_unit_test(every_fixed_placement_is_legal),
+      cmocka_unit_test(own_placements_are_checked_against_each_restart),
       cmocka_unit_test(ten_thousand_random_placements_are_legal),
       cmocka_unit_test(open_play_is_legal_and_a_third_of_it_at_the_walls),
       cmocka_unit_test(no_random_placement_is_at_once_whistled_again),
