@@ -5,8 +5,9 @@
 #include <string.h>
 
 #include "commands.h"
+#include "json_text.h"
+#include "match_flags.h"
 #include "message_text.h"
-#include "report.h"
 #include "serve_record.h"
 #include "vsss/clock.h"
 #include "vsss/serve.h"
@@ -136,7 +137,7 @@ static vs_status play(serve_command *c, vs_error *err) {
 static void print_team(FILE *out, const serve_command *c, vs_team team) {
   const vs_team_traffic *t = &vs_serve_get_stats(c->server)->team[team];
   fprintf(out, "\"%s\": {\"player\": ", vs_team_name(team));
-  vs_report_json_text(out, c->uri[team]);
+  vs_json_put(out, c->uri[team]);
   fprintf(out,
           ", \"heard\": %s, \"packets\": %" PRId64 ", \"commands\": %" PRId64 ", \"saturated\": %" PRId64
           ", \"placements\": %" PRId64 ", \"illegal_placements\": %" PRId64 ", \"silences\": %" PRId64
