@@ -12,7 +12,7 @@ extern "C" {
 #endif
 
 // Side of the team-colour square in the middle of an adversary's otherwise dark cap, as the rig draws it. Real teams
-// have 35 mm to 80 mm: field.ini [vision] patch_m.
+// have 30 mm to 80 mm; patch_m says how large one is where several run together.
 #define VS_PATCH_M 0.06
 
 // A mark with a name and a front, whatever its kind.

@@ -4,6 +4,8 @@
 
 #include "cli.h"
 #include "commands.h"
+#include "field_config.h"
+#include "vsss/calib.h"
 #include "vsss/camera.h"
 #include "vsss/detect.h"
 #include "vsss/frame_stream.h"
@@ -79,9 +81,10 @@ static vs_status draw(const finding *f, const vs_frame *frame, const char *path,
 }
 
 // The detector looks for one team's colour at a time: two rounds give both.
-static vs_status find_colours(const vs_frame *frame, const vs_tag_def *tag, finding *f, vs_error *err) {
+static vs_status find_colours(const vs_frame *frame, const vs_tag_def *tag, const vs_detector_def *colours, finding *f,
+                              vs_error *err) {
   for (int team = VS_BLUE; team <= VS_YELLOW; team++) {
-    vs_detector_def def = vs_detector_def_default();
+    vs_detector_def def = *colours;
     def.tag = *tag;
     def.adversary = (vs_team)team;
     vs_detector *detector;
@@ -99,8 +102,31 @@ static vs_status find_colours(const vs_frame *frame, const vs_tag_def *tag, find
   return VS_OK;
 }
 
-static vs_status look(const char *source, const vs_tag_def *def, bool colours, bool json, const char *drawing,
-                      vs_error *err) {
+// The colours of the field's configuration, and the sizes that a calibration gives them.
+static vs_status load_colours(const char *config, const char *calib, const vs_camera_info *info, vs_detector_def *out,
+                              vs_error *err) {
+  static vs_field_config file;
+  vs_calib c;
+  vs_status s = vs_field_config_load(config, &file, err);
+  if (s == VS_OK) *out = file.def.detector;
+  out->own = VS_MARK_APRIL, out->their = VS_MARK_PATCH;
+  if (s != VS_OK || !calib) return s;
+  s = vs_calib_load(calib, &c, err);
+  if (s == VS_OK) s = vs_calib_check_size(&c, calib, info->width, info->height, err);
+  if (s == VS_OK) out->px_per_m = vs_calib_px_per_m(&c, file.def.tracker.patch_height_m);
+  return s;
+}
+
+// What was asked.
+typedef struct request {
+  const char *source, *drawing, *config, *calib;
+  bool colours, json;
+} request;
+
+static vs_status look(const request *r, const vs_tag_def *def, vs_error *err) {
+  const char *source = r->source, *drawing = r->drawing;
+  bool colours = r->colours, json = r->json;
+  vs_detector_def colours_def = vs_detector_def_default();
   vs_camera_def camera_def = vs_camera_def_default();
   camera_def.every_frame = true;
   vs_camera *camera = NULL;
@@ -113,7 +139,8 @@ static vs_status look(const char *source, const vs_tag_def *def, bool colours, b
   if (s == VS_OK) s = vs_camera_read(camera, 5000, &frame, &got, err);
   if (s == VS_OK && got != VS_CAMERA_FRAME) s = vs_fail(err, VS_FAIL, "%s: gives no picture within 5 s", source);
   if (s == VS_OK) s = vs_tag_detect(detector, &frame, found.tag, MOST, &found.tags, err);
-  if (s == VS_OK && colours) s = find_colours(&frame, def, &found, err);
+  if (s == VS_OK && colours) s = load_colours(r->config, r->calib, vs_camera_about(camera), &colours_def, err);
+  if (s == VS_OK && colours) s = find_colours(&frame, def, &colours_def, &found, err);
   if (s == VS_OK && json) print_json(&found, &frame);
   if (s == VS_OK && !json) print_text(&found, colours);
   if (s == VS_OK && drawing) s = draw(&found, &frame, drawing, err);
@@ -125,8 +152,8 @@ static vs_status look(const char *source, const vs_tag_def *def, bool colours, b
 int cmd_detect(int argc, char **argv) {
   vs_camera_register(vs_frame_stream_camera());
   vs_tag_def def = vs_tag_def_photo();
-  bool json = false, field = false, colours = false, help;
-  const char *drawing = NULL;
+  request r = {0};
+  bool field = false, help;
   const char *family = def.family;
   double min_margin = -1;
   int contrast = 0;
@@ -138,9 +165,11 @@ int cmd_detect(int argc, char **argv) {
       {"min-margin", VS_FLAG_REAL, &min_margin, "M", "decision margin accepted (0; with --field 40)", 0, 255},
       {"contrast", VS_FLAG_INT, &contrast, "N", "least black to white in grey levels (5; with --field 40)", 1, 255},
       {"field", VS_FLAG_SWITCH, &field, NULL, "the thresholds of the field's camera instead of a photograph's", 0, 0},
-      {"colours", VS_FLAG_SWITCH, &colours, NULL, "also orange, blue and yellow blobs", 0, 0},
-      {"json", VS_FLAG_SWITCH, &json, NULL, "print JSON", 0, 0},
-      {"draw", VS_FLAG_TEXT, &drawing, "FILE", "write the picture with what was found (.png, .jpg)", 0, 0},
+      {"colours", VS_FLAG_SWITCH, &r.colours, NULL, "also orange, blue and yellow blobs, by --config", 0, 0},
+      {"config", VS_FLAG_TEXT, &r.config, "FILE", "colours: instead of deploy/config/field.ini", 0, 0},
+      {"calib", VS_FLAG_TEXT, &r.calib, "FILE", "colours: of the camera, to know the sizes of things", 0, 0},
+      {"json", VS_FLAG_SWITCH, &r.json, NULL, "print JSON", 0, 0},
+      {"draw", VS_FLAG_TEXT, &r.drawing, "FILE", "write the picture with what was found (.png, .jpg)", 0, 0},
       {NULL, VS_FLAG_SWITCH, NULL, NULL, NULL, 0, 0}};
   vs_flag_list words = {0};
   vs_error err;
@@ -159,6 +188,7 @@ int cmd_detect(int argc, char **argv) {
   def.family = family;
   def.min_margin = min_margin >= 0 ? min_margin : thresholds.min_margin;
   def.min_white_black_diff = contrast > 0 ? contrast : thresholds.min_white_black_diff;
-  s = look(words.value[0], &def, colours, json, drawing, &err);
+  r.source = words.value[0];
+  s = look(&r, &def, &err);
   return s == VS_OK ? 0 : vs_cli_error("detect", &err);
 }

@@ -3,12 +3,18 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "vision/blobs.h"
 #include "vsss/field.h"
 #include "vsss/tag.h"
 
 enum { BALL = 1, ADVERSARY = 2 };
+
+// Teams cut their colour from 30 mm upwards, whatever patch_m says, and a camera blurs its rim away.
+#define SMALLEST_PATCH_M 0.03
+// Middles of two patches on one cap are nearer than this.
+#define PATCHES_APART_M 0.055
 
 vs_tag_def vs_tag_def_field(void) {
   return (vs_tag_def){.family = VS_TAG_FAMILY,
@@ -33,8 +39,8 @@ vs_detector_def vs_detector_def_default(void) {
                            .own = VS_MARK_APRIL,
                            .their = VS_MARK_PATCH,
                            .adversary = VS_YELLOW,
-                           .ball = {5, 40, 0.5, 0.3},
-                           .team = {[VS_BLUE] = {195, 260, 0.3, 0.3}, [VS_YELLOW] = {46, 75, 0.45, 0.35}},
+                           .ball = {2, 40, 0.5, 0.3},
+                           .team = {[VS_BLUE] = {195, 260, 0.22, 0.3}, [VS_YELLOW] = {46, 88, 0.35, 0.35}},
                            .tag_paper_m = VS_TAG_PAPER_M,
                            .patch_m = VS_PATCH_M};
 }
@@ -62,6 +68,7 @@ static void set_sizes(vs_detector *d) {
   d->ball = gate_of(BALL, M_PI * radius_px * radius_px, 1);
   d->ball.max_px *= 1.4; // a fast ball is smeared over more
   d->adversary = gate_of(ADVERSARY, patch_px * patch_px, VS_TEAM_SIZE);
+  if (scale > 0) d->adversary.min_px = fmin(d->adversary.min_px, 0.5 * pow(scale * SMALLEST_PATCH_M, 2));
   double smallest_px = scale > 0 ? fmin(2 * radius_px, patch_px) : 8.0;
   d->step = (int)fmin(fmax(smallest_px / 4.0, 1.0), 4.0);
 }
@@ -156,6 +163,23 @@ static int keep_off_tags(const vs_detector *d, const vs_detections *seen, vs_blo
   return kept;
 }
 
+// An orange identification patch beside a team's colour looks like a ball. One that lies there counts only where no other
+// is seen: a real ball at a robot's side is as near.
+static int prefer_free_balls(const vs_detector *d, vs_detections *seen) {
+  int free_balls = 0;
+  vs_blob kept[VS_MAX_BLOBS];
+  for (int i = 0; i < seen->balls; i++) {
+    bool near = false;
+    for (int k = 0; k < seen->adversaries && !near; k++)
+      near = hypot(seen->ball[i].x_px - seen->adversary[k].x_px, seen->ball[i].y_px - seen->adversary[k].y_px) <
+             PATCHES_APART_M * d->def.px_per_m;
+    if (!near) kept[free_balls++] = seen->ball[i];
+  }
+  if (free_balls == 0) return seen->balls;
+  memcpy(seen->ball, kept, (size_t)free_balls * sizeof *kept);
+  return free_balls;
+}
+
 static vs_status find_marks(const vs_detector *d, const vs_frame *frame, vs_detections *out, vs_error *err) {
   vs_tag_detector *const finder[] = {d->april, d->aruco};
   vs_status s = VS_OK;
@@ -182,5 +206,6 @@ vs_status vs_detect(vs_detector *d, const vs_frame *frame, vs_detections *out, v
   if (s != VS_OK) return s;
   out->balls = keep_off_tags(d, out, out->ball, out->balls);
   out->adversaries = keep_off_tags(d, out, out->adversary, out->adversaries);
+  out->balls = prefer_free_balls(d, out);
   return VS_OK;
 }

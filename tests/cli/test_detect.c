@@ -69,6 +69,23 @@ static void json_and_colours_and_a_drawing_are_given_on_request(void **state) {
   assert_int_equal(access(path, R_OK), 0);
 }
 
+// The colours that the field plays with are the ones shown: a file that knows no yellow shows none.
+static void colours_are_those_of_the_configuration(void **state) {
+  (void)state;
+  static vsss_run run;
+  char path[64];
+  snprintf(path, sizeof path, "%s/venue.ini", folder);
+  FILE *f = fopen(path, "w");
+  assert_non_null(f);
+  fputs("[vision]\nyellow_hue_min_deg = 120\nyellow_hue_max_deg = 130\n", f);
+  fclose(f);
+  vsss(&run, in_folder("detect %s/field.png --colours --config %s/venue.ini"));
+  assert_int_equal(run.status, 0);
+  assert_non_null(strstr(run.out, "1 ball, 0 blue, 0 yellow"));
+  assert_refused("detect /dev/null --colours --config /nowhere/venue.ini", 1, "/dev/null");
+  assert_refused(in_folder("detect %s/field.png --colours --config /nowhere/venue.ini"), 1, "/nowhere/venue.ini");
+}
+
 static void another_family_finds_nothing_and_is_no_error(void **state) {
   (void)state;
   static vsss_run run;
@@ -110,6 +127,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(tags_are_listed_with_their_corners),
       cmocka_unit_test(json_and_colours_and_a_drawing_are_given_on_request),
+      cmocka_unit_test(colours_are_those_of_the_configuration),
       cmocka_unit_test(another_family_finds_nothing_and_is_no_error),
       cmocka_unit_test(bad_requests_are_one_line_with_the_fix),
       cmocka_unit_test(the_real_photograph_gives_twelve_tags),
