@@ -8,13 +8,16 @@ Q := $(if $(V),,@)
 FLAVOUR ?= plain
 B := build/$(FLAVOUR)
 PREFIX ?= /usr/local
+LIBDIR ?= $(PREFIX)/lib
 CC ?= cc
 CXX ?= c++
 
 include deploy/features.mk
+include deploy/version.mk
 
 # Messages may be cut short: snprintf into a fixed line is how they are made.
-WARN := -Wall -Wextra -Werror -Wno-format-truncation
+# A warning is an error in a checkout, where it can be mended.
+WARN := -Wall -Wextra $(if $(wildcard .git),-Werror) -Wno-format-truncation
 OPT := -O2 -g
 ifeq ($(FLAVOUR),asan)
 SAN := -fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined
@@ -25,20 +28,22 @@ SAN := -fsanitize=thread -fno-omit-frame-pointer
 OPT := -O1 -g
 endif
 # No fused multiply-add: a match must hash the same on every machine and at every optimisation level.
-CFLAGS_ALL := -std=gnu11 $(WARN) $(OPT) -ffp-contract=off -fPIC -pthread -Iinclude -Isrc -isystem build/gen -DVSSS_PREFIX='"$(PREFIX)"' $(FEATURE_CFLAGS) $(SAN) $(CFLAGS)
-CXXFLAGS_ALL := -std=gnu++17 $(WARN) $(OPT) -fPIC -pthread -Iinclude -Isrc $(SAN) $(CXXFLAGS)
+CFLAGS_ALL := -std=gnu11 $(WARN) $(OPT) -ffp-contract=off -fPIC -fvisibility=hidden -pthread -Iinclude -Isrc -isystem build/gen $(FEATURE_CFLAGS) $(SAN) $(CPPFLAGS) $(CFLAGS)
+CXXFLAGS_ALL := -std=gnu++17 $(WARN) $(OPT) -fPIC -pthread -Iinclude -Isrc $(SAN) $(CPPFLAGS) $(CXXFLAGS)
 LDLIBS_ALL := $(FEATURE_LIBS) -ldl -lm -pthread
 
 LIB_SRC := $(filter-out $(FEATURE_EXCLUDE),$(wildcard src/*/*.c src/*/*/*.c))
-LIB_SRC := $(filter-out src/cli/main.c,$(LIB_SRC))
+CLI_SRC := $(filter-out src/cli/main.c,$(filter src/cli/%,$(LIB_SRC)))
+LIB_SRC := $(filter-out src/cli/%,$(LIB_SRC))
 LIB_OBJ := $(LIB_SRC:%.c=$(B)/%.o) $(FEATURE_OBJ)
+CLI_OBJ := $(CLI_SRC:%.c=$(B)/%.o)
 MAIN_OBJ := $(B)/src/cli/main.o
 TEST_SRC := $(wildcard tests/*/test_*.c tests/*/*/test_*.c)
 BENCH_BIN := $(patsubst %.c,$(B)/%,$(wildcard tests/bench/bench_*.c))
 TEST_BIN := $(TEST_SRC:%.c=$(B)/%)
 VSSS := $(if $(filter plain,$(FLAVOUR)),vsss,$(B)/vsss)
 
-.PHONY: all test asan tsan lint bench bench-peers clean install help features tests
+.PHONY: all test asan tsan lint bench bench-peers clean library install uninstall help features tests
 all: features $(VSSS) $(MODULES) $(EXTRA_ALL)
 
 
@@ -49,15 +54,35 @@ help:
 	@echo "make lint      layers, formatting, banned functions, static analysis"
 	@echo "make bench     the figures: 'bench NAME VALUE UNIT', medians"
 	@echo "make bench-peers  beside the benchmarks of peer projects; INSTALL=1 installs those"
-	@echo "make install   into PREFIX ($(PREFIX)); make clean"
+	@echo "make install   into PREFIX ($(PREFIX)), libraries into LIBDIR ($(LIBDIR)); make uninstall"
+	@echo "make library   build/plain/libvsss.so, the C library for other programs; make clean"
 
-$(VSSS): $(MAIN_OBJ) $(B)/libvsss.a
+ARCHIVES := $(B)/libcli.a $(B)/libvsss.a
+WHOLE := -Wl,--whole-archive $(ARCHIVES) -Wl,--no-whole-archive
+
+# -rdynamic: the modules call back what VSSS_API marks.
+$(VSSS): $(MAIN_OBJ) $(ARCHIVES)
 	@echo '  LD    $@'
-	$(Q)$(CC) $(SAN) -rdynamic -o $@ $(MAIN_OBJ) -Wl,--whole-archive $(B)/libvsss.a -Wl,--no-whole-archive $(LDLIBS_ALL)
+	$(Q)$(CC) $(SAN) $(LDFLAGS) -rdynamic -o $@ $(MAIN_OBJ) $(WHOLE) $(LDLIBS_ALL)
 
 $(B)/libvsss.a: $(LIB_OBJ)
 	@rm -f $@
 	$(Q)ar rcs $@ $(LIB_OBJ)
+
+$(B)/libcli.a: $(CLI_OBJ)
+	@rm -f $@
+	$(Q)ar rcs $@ $(CLI_OBJ)
+
+# The library for other programs: what the functions marked VSSS_API need, and nothing else.
+$(B)/$(LIBRARY): $(B)/libvsss.a
+	@echo '  LD    $@'
+	@readelf -sW $< | awk '$$5 == "GLOBAL" && $$6 == "DEFAULT" && $$7 != "UND" {print "-Wl,-u," $$8}' | sort -u > $@.exports
+	$(Q)$(CC) $(SAN) $(LDFLAGS) -shared -Wl,-soname,$(SONAME) $(if $(SAN),,-Wl,-z,defs) -Wl,--as-needed -o $@ @$@.exports $< $(LDLIBS_ALL)
+	@ln -sf $(LIBRARY) $(B)/$(SONAME)
+	@ln -sf $(SONAME) $(B)/libvsss.so
+
+$(B)/libvsss.so: $(B)/$(LIBRARY) ;
+library: $(B)/libvsss.so
 
 $(B)/%.o: %.c build/features.mk | $(GENERATED)
 	@mkdir -p $(@D)
@@ -65,10 +90,10 @@ $(B)/%.o: %.c build/features.mk | $(GENERATED)
 	$(Q)$(CC) $(CFLAGS_ALL) -MMD -MP -c -o $@ $<
 
 # Tests: one binary per file, linked with everything.
-$(B)/tests/%: tests/%.c $(B)/libvsss.a
+$(B)/tests/%: tests/%.c $(ARCHIVES)
 	@mkdir -p $(@D)
 	@echo '  TEST  $@'
-	$(Q)$(CC) $(CFLAGS_ALL) -Itests -rdynamic -MMD -MP -MF $@.d -o $@ $< -Wl,--whole-archive $(B)/libvsss.a -Wl,--no-whole-archive -lcmocka $(LDLIBS_ALL) -lz
+	$(Q)$(CC) $(CFLAGS_ALL) -Itests $(LDFLAGS) -rdynamic -MMD -MP -MF $@.d -o $@ $< $(WHOLE) -lcmocka $(LDLIBS_ALL) -lz
 
 tests: all $(TEST_BIN) $(EXTRA_TESTS)
 
@@ -98,19 +123,6 @@ bench-peers: all $(BENCH_BIN)
 clean:
 	rm -rf build vsss
 
-# ./vsss, the modules, the models and the C library for other trainers and plugins.
-install: all $(B)/libvsss.so
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/lib/pkgconfig $(DESTDIR)$(PREFIX)/include/vsss $(DESTDIR)$(PREFIX)/share/vsss/build/lib
-	install vsss $(DESTDIR)$(PREFIX)/bin/vsss
-	install -m 644 $(B)/libvsss.so $(DESTDIR)$(PREFIX)/lib/libvsss.so
-	install -m 644 include/vsss/*.h $(DESTDIR)$(PREFIX)/include/vsss
-	cp -r models deploy lcm_types $(DESTDIR)$(PREFIX)/share/vsss
-	$(if $(MODULES),install -m 644 $(MODULES) $(DESTDIR)$(PREFIX)/share/vsss/build/lib)
-	@if [ -d build/onnxruntime ]; then cp -r build/onnxruntime $(DESTDIR)$(PREFIX)/share/vsss/build; fi
-	@printf 'prefix=%s\nName: vsss\nDescription: IEEE VSSS simulator, environments and players\nVersion: 1\nCflags: -I$${prefix}/include\nLibs: -L$${prefix}/lib -lvsss\nLibs.private: %s\n' \
-	  '$(PREFIX)' '$(LDLIBS_ALL)' > $(DESTDIR)$(PREFIX)/lib/pkgconfig/vsss.pc
+include deploy/install.mk
 
-$(B)/libvsss.so: $(B)/libvsss.a
-	$(Q)$(CC) $(SAN) -shared -o $@ -Wl,--whole-archive $(B)/libvsss.a -Wl,--no-whole-archive $(LDLIBS_ALL)
-
--include $(LIB_OBJ:.o=.d) $(MAIN_OBJ:.o=.d) $(TEST_BIN:=.d) $(BENCH_BIN:=.d)
+-include $(LIB_OBJ:.o=.d) $(CLI_OBJ:.o=.d) $(MAIN_OBJ:.o=.d) $(TEST_BIN:=.d) $(BENCH_BIN:=.d)

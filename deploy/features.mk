@@ -34,7 +34,7 @@ $(LCM_NAMES:%=build/gen/lcm/%.c): build/gen/lcm/.made ;
 # Generated code is not clean under -Wextra, and is not ours to mend.
 $(B)/gen/lcm/%.o: build/gen/lcm/%.c
 	@mkdir -p $(@D)
-	$(Q)$(CC) -std=gnu11 -w $(OPT) -fPIC $(SAN) -c -o $@ $<
+	$(Q)$(CC) -std=gnu11 -w $(OPT) -fPIC -fvisibility=hidden $(SAN) $(CPPFLAGS) $(CFLAGS) -c -o $@ $<
 $(LCM_SRC:%.c=$(B)/%.o): build/gen/lcm/.made
 endif
 
@@ -73,7 +73,7 @@ FEATURE_EXCLUDE += $(call choose,ONNXRUNTIME,src/policy/policy_onnx.c)
 FEATURE_CFLAGS += $(if $(HAVE_ONNXRUNTIME),-isystem $(firstword $(wildcard /usr/include/onnxruntime build/onnxruntime/include)))
 
 # Modules: build/lib/vsss_NAME.so from the shims of one library, src/*/*_NAME.cpp (or .c). Never built with a sanitizer.
-SHIM_CFLAGS := $(WARN) -O2 -g -fPIC -pthread -Iinclude -Isrc -MMD -MP
+SHIM_CFLAGS := $(WARN) -O2 -g -fPIC -pthread -Iinclude -Isrc -MMD -MP $(CPPFLAGS)
 SHIM_OBJ :=
 # $(call module,NAME,SOURCES,INCLUDE FLAGS,LIBRARIES)
 define module
@@ -83,16 +83,16 @@ $(2:%=build/shim/%.o): SHIM_INCLUDE := $(3)
 build/lib/vsss_$(1).so: $(2:%=build/shim/%.o)
 	@mkdir -p $$(@D)
 	@echo '  LD    $$@'
-	$$(Q)$$(CXX) -shared -pthread -o $$@ $$^ $(4)
+	$$(Q)$$(CXX) $$(LDFLAGS) -shared -pthread -o $$@ $$^ $(4)
 endef
 build/shim/%.cpp.o: %.cpp build/features.mk
 	@mkdir -p $(@D)
 	@echo '  CXX   $<'
-	$(Q)$(CXX) -std=gnu++17 $(SHIM_CFLAGS) $(SHIM_INCLUDE) -c -o $@ $<
+	$(Q)$(CXX) -std=gnu++17 $(SHIM_CFLAGS) $(CXXFLAGS) $(SHIM_INCLUDE) -c -o $@ $<
 build/shim/%.c.o: %.c build/features.mk
 	@mkdir -p $(@D)
 	@echo '  CC    $<'
-	$(Q)$(CC) -std=gnu11 $(SHIM_CFLAGS) $(SHIM_INCLUDE) -c -o $@ $<
+	$(Q)$(CC) -std=gnu11 $(SHIM_CFLAGS) $(CFLAGS) $(SHIM_INCLUDE) -c -o $@ $<
 
 OPENCV_SHIMS := $(wildcard src/*/*_opencv.cpp)
 TORCH_SHIMS := $(wildcard src/*/*_torch.cpp)

@@ -1,3 +1,5 @@
+// Stable: part of libvsss (deploy/docs/library.md).
+//
 // Flat functions for bindings of other languages (deploy/python is one): handles, numbers, arrays of the caller and
 // texts, no structs to mirror but one. Everything else in include/vsss is for C.
 //
@@ -10,9 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifndef VSSS_API
-#define VSSS_API __attribute__((visibility("default")))
-#endif
+#include "vsss/api.h"
 
 #ifdef __cplusplus
 extern "C" {

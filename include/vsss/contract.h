@@ -1,3 +1,5 @@
+// Stable: part of libvsss (deploy/docs/library.md).
+//
 // The contract between observation, network and wheels: the layout of a policy's input and output. Its hash is
 // stored in every checkpoint and every ONNX file; a model with another hash is refused.
 //
@@ -8,6 +10,8 @@
 #define VSSS_CONTRACT_H
 
 #include <stdint.h>
+
+#include "vsss/api.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -45,10 +49,10 @@ enum {
   VS_OBS_TIME_LEFT = 57,
 };
 
-const char *vs_contract_text(void); // the canonical description that is hashed: names, scales, rates, version
-uint64_t vs_contract_hash(void);
-const char *vs_contract_hash_hex(void); // 16 digits
-const char *vs_obs_name(int index);     // of 0..57, such as "ball_x"
+VSSS_API const char *vs_contract_text(void); // the canonical description that is hashed: names, scales, rates, version
+VSSS_API uint64_t vs_contract_hash(void);
+VSSS_API const char *vs_contract_hash_hex(void); // 16 digits
+VSSS_API const char *vs_obs_name(int index);     // of 0..57, such as "ball_x"
 
 #ifdef __cplusplus
 }

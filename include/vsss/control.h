@@ -1,3 +1,5 @@
+// Stable: part of libvsss (deploy/docs/library.md).
+//
 // One team at its own rate: observe -> policy -> wheels. The only path from a world to a wheel, the same in
 // simulation and on the field.
 #ifndef VSSS_CONTROL_H
@@ -7,6 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "vsss/api.h"
 #include "vsss/observe.h"
 #include "vsss/policy.h"
 
@@ -19,35 +22,35 @@ typedef struct vs_control vs_control;
 // Takes the player over where it succeeds (vs_control_free closes it). player NULL: an external team, whose actions the
 // caller gives with vs_control_set_action and whose observations it reads through vs_control_observer. VS_FAIL: a rate
 // that is not VS_CAMERA_HZ divided by a whole number. Call vs_control_reset before the first step.
-vs_status vs_control_new(vs_player *player, vs_control **out, vs_error *err);
-void vs_control_free(vs_control *control);
+VSSS_API vs_status vs_control_new(vs_player *player, vs_control **out, vs_error *err);
+VSSS_API void vs_control_free(vs_control *control);
 
 // Start of a match or an episode: forgets the past, reseeds the player. shuffle_adversaries: training's random order.
-vs_status vs_control_reset(vs_control *control, uint64_t seed, bool shuffle_adversaries, vs_error *err);
+VSSS_API vs_status vs_control_reset(vs_control *control, uint64_t seed, bool shuffle_adversaries, vs_error *err);
 // After the referee placed the robots: history and last action start anew, the next call decides, the player goes on.
-void vs_control_restart(vs_control *control);
+VSSS_API void vs_control_restart(vs_control *control);
 
 // Called for every camera frame with the measured absolute world and game, dt_s since the last call. Lets the player
 // decide when its rate says so (the first call decides, lost frames are skipped, never made up for) and writes the
 // wheels to apply until the next call; where it fails, zeros. decided (may be NULL) tells whether this frame was a
 // decision. A scripted team is observed at VS_DECISION_HZ all the same, so that it can be recorded and imitated.
-vs_status vs_control_step(vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game, double dt_s,
-                          vs_wheels out[VS_TEAM_SIZE], bool *decided, vs_error *err);
+VSSS_API vs_status vs_control_step(vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game,
+                                   double dt_s, vs_wheels out[VS_TEAM_SIZE], bool *decided, vs_error *err);
 
 // External teams: observe (push a frame at a decision time), read, act. The action is held until the next; one that is
 // not finite is VS_FAIL and changes nothing.
-void vs_control_observe(vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game);
-vs_status vs_control_set_action(vs_control *control, const float *action /* [3][2] */, vs_error *err);
+VSSS_API void vs_control_observe(vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game);
+VSSS_API vs_status vs_control_set_action(vs_control *control, const float *action /* [3][2] */, vs_error *err);
 
-const vs_observer *vs_control_observer(const vs_control *control);
-const float *vs_control_action(const vs_control *control); // the last, [3][2] in [-1, 1]
-vs_player *vs_control_player(vs_control *control);         // NULL for an external team
+VSSS_API const vs_observer *vs_control_observer(const vs_control *control);
+VSSS_API const float *vs_control_action(const vs_control *control); // the last, [3][2] in [-1, 1]
+VSSS_API vs_player *vs_control_player(vs_control *control);         // NULL for an external team
 
 // Snapshots: state is a block of vs_control_state_size bytes of the caller. Size 0: its player cannot be snapshotted.
-size_t vs_control_state_size(const vs_control *control);
-void vs_control_save(const vs_control *control, void *state);
+VSSS_API size_t vs_control_state_size(const vs_control *control);
+VSSS_API void vs_control_save(const vs_control *control, void *state);
 // VS_FAIL: a number that cannot be; the control is then as it was, its player perhaps reset.
-vs_status vs_control_restore(vs_control *control, const void *state, vs_error *err);
+VSSS_API vs_status vs_control_restore(vs_control *control, const void *state, vs_error *err);
 
 #ifdef __cplusplus
 }

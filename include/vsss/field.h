@@ -1,3 +1,5 @@
+// Stable: part of libvsss (deploy/docs/library.md).
+//
 // Sizes of the 3 against 3 field, ball and robot (paper, Table 1 and section VI; IEEE VSSS rules 2008).
 // Origin in the field's centre, x towards the goal that blue attacks, y to blue's left, z up. Metres, kilograms.
 #ifndef VSSS_FIELD_H

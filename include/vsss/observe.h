@@ -1,7 +1,10 @@
+// Stable: part of libvsss (deploy/docs/library.md).
+//
 // World -> floats and floats -> wheels, pure, the same object file in simulation and on the field.
 #ifndef VSSS_OBSERVE_H
 #define VSSS_OBSERVE_H
 
+#include "vsss/api.h"
 #include "vsss/contract.h"
 #include "vsss/world.h"
 
@@ -14,8 +17,8 @@ extern "C" {
 // [-1, 1]; a number that is not finite comes out as one (check the world before). out float[VS_TEAM_SIZE][VS_OBS_FRAME]. view is the measured world in team view,
 // last_action float[VS_TEAM_SIZE][2] what this team last commanded, in [-1, 1]. adversary_order[k] is the robot index
 // shown in adversary slot k (a permutation of 0..2; NULL: 0, 1, 2).
-void vs_observe_frame(const vs_world *view, const vs_game *game, const float *last_action, const int *adversary_order,
-                      float *out);
+VSSS_API void vs_observe_frame(const vs_world *view, const vs_game *game, const float *last_action,
+                               const int *adversary_order, float *out);
 
 // The stack of the last VS_OBS_STACK frames of one team. Plain data: a copy is a snapshot.
 typedef struct vs_observer {
@@ -25,10 +28,13 @@ typedef struct vs_observer {
   float frame[VS_OBS_STACK][VS_TEAM_SIZE][VS_OBS_FRAME];
 } vs_observer;
 
-void vs_observer_init(vs_observer *observer, const int *adversary_order /* or NULL */);
-void vs_observer_restart(vs_observer *observer); // after a (re)start of play: keeps the order, forgets the frames
-void vs_observer_push(vs_observer *observer, const vs_world *view, const vs_game *game, const float *last_action);
-void vs_observer_write(const vs_observer *observer, float *out /* [VS_TEAM_SIZE][VS_OBS_SIZE], oldest frame first */);
+VSSS_API void vs_observer_init(vs_observer *observer, const int *adversary_order /* or NULL */);
+VSSS_API void
+vs_observer_restart(vs_observer *observer); // after a (re)start of play: keeps the order, forgets the frames
+VSSS_API void vs_observer_push(vs_observer *observer, const vs_world *view, const vs_game *game,
+                               const float *last_action);
+VSSS_API void vs_observer_write(const vs_observer *observer,
+                                float *out /* [VS_TEAM_SIZE][VS_OBS_SIZE], oldest frame first */);
 
 // The symmetries of one robot's observation: the field mirrored left to right (y, sines and angles change their sign,
 // the wheels change places), the two allies exchanged, the three adversaries in any order. The canonical one of the 24
@@ -42,14 +48,14 @@ typedef struct vs_symmetry_table {
 } vs_symmetry_table;
 
 // Versions are numbered (mirrored * 2 + allies exchanged) * 6 + order of the adversaries.
-void vs_symmetry_table_init(vs_symmetry_table *table);
-int vs_symmetry_canonical(const float *observation /* [VS_OBS_SIZE] */); // the version that is canonical
-void vs_symmetry_apply(const vs_symmetry_table *table, int version, const float *observation, float *out);
+VSSS_API void vs_symmetry_table_init(vs_symmetry_table *table);
+VSSS_API int vs_symmetry_canonical(const float *observation /* [VS_OBS_SIZE] */); // the version that is canonical
+VSSS_API void vs_symmetry_apply(const vs_symmetry_table *table, int version, const float *observation, float *out);
 static inline int vs_symmetry_mirrored(int version) { return version / 12; } // 1: left and right wheel change places
 
 // Action in [-1, 1] <-> rad/s. A value that is not finite is VS_FAIL naming robot and wheel; others are clamped.
-vs_status vs_action_to_wheels(const float *action /* [3][2] */, vs_wheels out[VS_TEAM_SIZE], vs_error *err);
-void vs_action_from_wheels(const vs_wheels wheels[VS_TEAM_SIZE], float *action);
+VSSS_API vs_status vs_action_to_wheels(const float *action /* [3][2] */, vs_wheels out[VS_TEAM_SIZE], vs_error *err);
+VSSS_API void vs_action_from_wheels(const vs_wheels wheels[VS_TEAM_SIZE], float *action);
 
 #ifdef __cplusplus
 }

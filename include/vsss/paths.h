@@ -18,8 +18,11 @@ vs_status vs_path_find(const char *relative, char *out, size_t out_size, vs_erro
 // Makes a folder and those above it, as `mkdir -p` does; one that is there is left as it is.
 vs_status vs_path_make_folder(const char *path, unsigned mode, vs_error *err);
 
-// Loads build/lib/vsss_NAME.so, one of the modules that cost start-up time (opencv, torch, mpi), and returns its
-// handle for dlsym. VS_FAIL says which Debian package to install and to run make again.
+// The same for a shared library, named as it lies in a checkout, such as "build/lib/vsss_mpi.so": installed, it lies in
+// LIBDIR/vsss.
+vs_status vs_path_library(const char *built, char *out, size_t out_size, vs_error *err);
+
+// Loads vsss_NAME.so, one of the modules that cost start-up time (opencv, torch, mpi), and returns its handle for dlsym. VS_FAIL says which Debian package to install and to run make again.
 vs_status vs_module_load(const char *name, const char *debian_package, void **handle, vs_error *err);
 
 #ifdef __cplusplus

@@ -1,3 +1,5 @@
+// Stable: part of libvsss (deploy/docs/library.md).
+//
 // The interface of a player that is code: built-in strategies and teams' own plugins alike. A plugin is a shared
 // object that exports one function, `const vsss_player_api *vsss_player(void)`, and is opened as plugin:FILE.so.
 //

@@ -1,3 +1,5 @@
+// Stable: part of libvsss (deploy/docs/library.md).
+//
 // World in, event out; and where the pieces stand after an event. Pure: reads no clock, moves nothing.
 //
 // Two sets of rules, each a table: the paper's (section V: goal, penalty, free ball) and the league's (the automatic
@@ -6,6 +8,7 @@
 #ifndef VSSS_REFEREE_H
 #define VSSS_REFEREE_H
 
+#include "vsss/api.h"
 #include "vsss/rng.h"
 #include "vsss/world.h"
 
@@ -39,8 +42,8 @@ typedef struct vs_referee_def {
   double still_distance_m;  // VS_STILL_DISTANCE_M
 } vs_referee_def;
 
-vs_referee_def vs_referee_def_default(vs_rules rules); // a match: paper 120 s, league 2 x 300 s
-vs_referee_def vs_referee_def_training(void);          // 40 s, first goal ends it, random placement
+VSSS_API vs_referee_def vs_referee_def_default(vs_rules rules); // a match: paper 120 s, league 2 x 300 s
+VSSS_API vs_referee_def vs_referee_def_training(void);          // 40 s, first goal ends it, random placement
 
 // Plain data: a copy is a snapshot.
 typedef struct vs_referee {
@@ -58,22 +61,23 @@ typedef struct vs_referee {
 } vs_referee;
 
 // game.last_event is then the first KICK_OFF, which wants vs_place. VS_USAGE: a number out of range.
-vs_status vs_referee_init(vs_referee *referee, const vs_referee_def *def, vs_error *err);
+VSSS_API vs_status vs_referee_init(vs_referee *referee, const vs_referee_def *def, vs_error *err);
 // Whether a copy, of a match of this def, can be gone on from: false for numbers that no match has, as in a damaged file.
-bool vs_referee_ok(const vs_referee *referee, const vs_referee_def *def);
+VSSS_API bool vs_referee_ok(const vs_referee *referee, const vs_referee_def *def);
 // Time goes on by dt_s and the true world is judged. Returns what happened (VS_EVENT_NONE mostly); game is up to date.
 // GOAL, PENALTY, FREE_BALL, GOAL_KICK and HALF_TIME want vs_place and vs_referee_restarted, unless the match is over.
 // It is over after END (time is up) and after a GOAL that ends it (first goal of an episode, goal difference, or time
 // up in the same frame: no END follows then). A match that is over returns NONE.
-vs_event vs_referee_step(vs_referee *referee, const vs_world *world, double dt_s);
+VSSS_API vs_event vs_referee_step(vs_referee *referee, const vs_world *world, double dt_s);
 // After a placement: the clocks of stillness and of fouls start anew.
-void vs_referee_restarted(vs_referee *referee, const vs_world *world);
+VSSS_API void vs_referee_restarted(vs_referee *referee, const vs_world *world);
 
 // Legal poses for the restart that event calls for (a goal is followed by the conceding side's kick-off), everything at
 // rest; time_us and seq are before's. PAPER: the fixed positions, rng is not used; robot 0 keeps the goal and, at a
 // penalty, stands on its line pointed straight at the ball. RANDOM: the ball where the restart puts it, robots anywhere
 // the rules allow, roles and headings random. Events without a placement (NONE, END, HALT) give before itself.
-void vs_place(vs_placement_mode mode, const vs_event *event, const vs_world *before, vs_rng *rng, vs_world *out);
+VSSS_API void vs_place(vs_placement_mode mode, const vs_event *event, const vs_world *before, vs_rng *rng,
+                       vs_world *out);
 
 // Whether a team may stand like this at that restart: inside the field, on nobody and not on the ball's place, where the
 // rules let it, and with the robot that the restart needs (taker, keeper on its line). Absolute frame. VS_FAIL says which
@@ -83,10 +87,10 @@ vs_status vs_placement_check(const vs_event *event, vs_team team, const vs_pose 
 // Open play, for the starts of training episodes: robots anywhere with any heading, the ball anywhere outside the areas
 // (a third of the time at a wall or in a corner) and, but for those, rolling at up to VS_OPEN_PLAY_MPS.
 #define VS_OPEN_PLAY_MPS 1.0
-void vs_place_open_play(const vs_world *before, vs_rng *rng, vs_world *out);
+VSSS_API void vs_place_open_play(const vs_world *before, vs_rng *rng, vs_world *out);
 
-vs_status vs_rules_parse(const char *name, vs_rules *out, vs_error *err);              // "paper", "league"
-vs_status vs_placement_parse(const char *name, vs_placement_mode *out, vs_error *err); // "paper", "random"
+VSSS_API vs_status vs_rules_parse(const char *name, vs_rules *out, vs_error *err);              // "paper", "league"
+VSSS_API vs_status vs_placement_parse(const char *name, vs_placement_mode *out, vs_error *err); // "paper", "random"
 
 #ifdef __cplusplus
 }

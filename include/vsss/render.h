@@ -1,3 +1,5 @@
+// Stable: part of libvsss (deploy/docs/library.md).
+//
 // Pictures of a vs_world, off screen: EGL without a window, drawn by MuJoCo. Two views: BROADCAST for people (coloured
 // robots, shadows, score, clock, captions) and CAMERA, the overhead camera of a venue (plain, fast, exact pinhole).
 // Only poses are read, so a world from the simulator, a tracker or a log is drawn alike.
@@ -6,6 +8,7 @@
 
 #include <stdint.h>
 
+#include "vsss/api.h"
 #include "vsss/world.h"
 
 #ifdef __cplusplus
@@ -34,17 +37,19 @@ typedef struct vs_render_def {
   const char *title;      // BROADCAST: shown beside the score, such as "EMC  INF"; NULL: none. Copied.
 } vs_render_def;
 
-vs_render_def vs_render_def_default(vs_view view); // 1280x720 broadcast, 640x480 camera, no pictures on the caps
+VSSS_API vs_render_def
+vs_render_def_default(vs_view view); // 1280x720 broadcast, 640x480 camera, no pictures on the caps
 
 typedef struct vs_render vs_render; // owns one OpenGL context; one thread at a time
 
 // VS_FAIL: no EGL (built without its headers, library or driver missing): says which package to install.
-vs_status vs_render_new(const vs_render_def *def, vs_render **out, vs_error *err);
-void vs_render_free(vs_render *render); // NULL is allowed
+VSSS_API vs_status vs_render_new(const vs_render_def *def, vs_render **out, vs_error *err);
+VSSS_API void vs_render_free(vs_render *render); // NULL is allowed
 
 // Draws world into rgb, uint8_t[height_px][width_px][3], top row first. Pieces that are not valid are left out. game:
 // NULL for a picture without score and captions; the CAMERA view never shows them.
-vs_status vs_render_world(vs_render *render, const vs_world *world, const vs_game *game, uint8_t *rgb, vs_error *err);
+VSSS_API vs_status vs_render_world(vs_render *render, const vs_world *world, const vs_game *game, uint8_t *rgb,
+                                   vs_error *err);
 
 // The CAMERA view's exact geometry: square pixels, no distortion, looking straight down on the field's centre, with the
 // image's right = +x and its top = +y. Pixels are counted as in camera.h and calib.h: the middle of 640 pixels is 320.
@@ -54,7 +59,7 @@ typedef struct vs_pinhole {
   double focal_px, cx_px, cy_px;
   double height_m; // of the lens over the floor
 } vs_pinhole;
-vs_pinhole vs_render_pinhole(const vs_render *render);
+VSSS_API vs_pinhole vs_render_pinhole(const vs_render *render);
 
 #ifdef __cplusplus
 }

@@ -1,3 +1,5 @@
+// Stable: part of libvsss (deploy/docs/library.md).
+//
 // Reward: terms first, then the weighted sum (paper, equations 6 to 16). Team view throughout.
 //
 // Universal terms are the same for the three robots of a team (speed, distance, goal, foul, progress, still), specific ones are
@@ -6,6 +8,7 @@
 #ifndef VSSS_REWARD_H
 #define VSSS_REWARD_H
 
+#include "vsss/api.h"
 #include "vsss/world.h"
 
 #ifdef __cplusplus
@@ -40,16 +43,16 @@ typedef struct vs_reward_weights {
   double weight[VS_REWARD_TERMS];
 } vs_reward_weights;
 
-vs_reward_weights vs_reward_paper(void);         // 0.7, 0.1, 0.1, 0.1, goal 10, foul 1, the rest 0
-const char *vs_reward_name(vs_reward_term term); // "speed", ... as in logs and settings
+VSSS_API vs_reward_weights vs_reward_paper(void);         // 0.7, 0.1, 0.1, 0.1, goal 10, foul 1, the rest 0
+VSSS_API const char *vs_reward_name(vs_reward_term term); // "speed", ... as in logs and settings
 
 // Terms for the three robots of a team for one decision: the true world in team view at its start and at its end (where
 // the referee whistled: as it was before any placement), the event that ended it (as seen by the team; NONE or any
 // other kind than GOAL and PENALTY leaves the dense terms) and the game.
-void vs_reward_terms(const vs_world *previous, const vs_world *view, const vs_event *event, const vs_game *game,
-                     double terms[VS_TEAM_SIZE][VS_REWARD_TERMS]);
-void vs_reward_sum(const double terms[VS_TEAM_SIZE][VS_REWARD_TERMS], const vs_reward_weights *weights,
-                   float reward[VS_TEAM_SIZE]);
+VSSS_API void vs_reward_terms(const vs_world *previous, const vs_world *view, const vs_event *event,
+                              const vs_game *game, double terms[VS_TEAM_SIZE][VS_REWARD_TERMS]);
+VSSS_API void vs_reward_sum(const double terms[VS_TEAM_SIZE][VS_REWARD_TERMS], const vs_reward_weights *weights,
+                            float reward[VS_TEAM_SIZE]);
 
 #ifdef __cplusplus
 }

@@ -1,8 +1,11 @@
+// Stable: part of libvsss (deploy/docs/library.md).
+//
 // What a team's camera and radio make of the true world: noise, delay, lost detections; and what its radio makes of
 // commands. Default: the paper's noise, nothing else. Ranges: field.md 6.3, deploy/config/realism.ini.
 #ifndef VSSS_SENSOR_MODEL_H
 #define VSSS_SENSOR_MODEL_H
 
+#include "vsss/api.h"
 #include "vsss/kalman.h"
 #include "vsss/rng.h"
 #include "vsss/sim.h"
@@ -37,13 +40,13 @@ typedef struct vs_realism {
   vs_range push_per_s, push_mps;
 } vs_realism;
 
-vs_realism vs_realism_default(void); // the paper's noise only
+VSSS_API vs_realism vs_realism_default(void); // the paper's noise only
 // INI over the default: one section per range of the struct with keys low and high; noise = true or false and
 // ideal_share = 0 to 1 at the top.
-vs_status vs_realism_load(const char *path, vs_realism *out, vs_error *err);
-vs_status vs_realism_parse(const char *name_for_errors, const char *text, vs_realism *out, vs_error *err);
+VSSS_API vs_status vs_realism_load(const char *path, vs_realism *out, vs_error *err);
+VSSS_API vs_status vs_realism_parse(const char *name_for_errors, const char *text, vs_realism *out, vs_error *err);
 // The simulator's parameters of the episode with this seed.
-vs_sim_params vs_realism_draw(const vs_realism *realism, uint64_t seed);
+VSSS_API vs_sim_params vs_realism_draw(const vs_realism *realism, uint64_t seed);
 
 #define VS_SENSOR_DELAY_FRAMES 8
 #define VS_SENSOR_OBJECTS      (VS_TEAMS * VS_TEAM_SIZE + 1) // the ball is last
@@ -75,18 +78,18 @@ typedef struct vs_sensors {
 } vs_sensors;
 
 // A new episode from this seed; give params to vs_sim_reset.
-void vs_sensors_reset(vs_sensors *sensors, const vs_realism *realism, uint64_t seed);
+VSSS_API void vs_sensors_reset(vs_sensors *sensors, const vs_realism *realism, uint64_t seed);
 // Whether they can be gone on from: false for numbers that no reset and no frame makes, as in a damaged file.
-bool vs_sensors_ok(const vs_sensors *sensors);
+VSSS_API bool vs_sensors_ok(const vs_sensors *sensors);
 // Velocities are those that a Kalman filter of the measured poses estimates, as on the field; wheel speeds are not seen
 // by a camera and become 0.
-void vs_sensors_measure(vs_sensors *sensors, const vs_world *truth, vs_world *measured);
+VSSS_API void vs_sensors_measure(vs_sensors *sensors, const vs_world *truth, vs_world *measured);
 // After a placement: what is seen next says nothing about how fast anything moved.
-void vs_sensors_restart(vs_sensors *sensors);
+VSSS_API void vs_sensors_restart(vs_sensors *sensors);
 // Commands as decided in this frame -> commands at the robots, the mean over this frame. A delay of 1.8 frames mixes
 // the commands of one and two frames ago, 0.2 to 0.8. A team whose radio frame is lost keeps its last command.
-void vs_sensors_command(vs_sensors *sensors, const vs_wheels in[VS_TEAMS][VS_TEAM_SIZE],
-                        vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]);
+VSSS_API void vs_sensors_command(vs_sensors *sensors, const vs_wheels in[VS_TEAMS][VS_TEAM_SIZE],
+                                 vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]);
 
 #ifdef __cplusplus
 }

@@ -1,9 +1,18 @@
+// Stable: part of libvsss (deploy/docs/library.md).
+//
 // The simulator: MuJoCo with one constant model shared by all matches and one state each. Knows nothing of rules.
+//
+// MuJoCo keeps its hooks in global variables of the process. This module owns four of them, and sets them once: its error
+// and warning handlers when it first calls into MuJoCo (an error comes back as VS_FAIL; nothing is printed), and, when the
+// first PLANAR model is loaded, the collision of boxes with planes and boxes in mjCOLLISIONFUNC: geoms that our model marks
+// (user="1") get contacts of their own, all others go on to the functions that stood there before. A program that uses
+// MuJoCo itself sets its own handlers before, and calls it outside of ours at its own risk of a handler that jumps.
 #ifndef VSSS_SIM_H
 #define VSSS_SIM_H
 
 #include <stddef.h>
 
+#include "vsss/api.h"
 #include "vsss/world.h"
 
 #ifdef __cplusplus
@@ -13,8 +22,10 @@ extern "C" {
 // CONTACT: free bodies on wheels that roll by friction (the reference). PLANAR: joints x, y, yaw per robot and a
 // traction law outside MuJoCo (the fast twin).
 typedef enum vs_drive { VS_DRIVE_CONTACT, VS_DRIVE_PLANAR } vs_drive;
-const char *vs_drive_name(vs_drive drive); // "contact", "planar"
-vs_status vs_drive_parse(const char *name, vs_drive *out, vs_error *err);
+VSSS_API const char *vs_drive_name(vs_drive drive); // "contact", "planar"
+VSSS_API vs_status vs_drive_parse(const char *name, vs_drive *out, vs_error *err);
+
+VSSS_API const char *vs_mujoco_version(void); // of the library that is running, such as "2.3.2"
 
 typedef struct vs_model vs_model; // constant after loading, shared by threads
 
@@ -25,15 +36,15 @@ typedef struct vs_model_def {
   int frame_hz;           // 0: VS_CAMERA_HZ, as everything above the simulator expects; others for bare simulations
 } vs_model_def;
 
-vs_model_def vs_model_def_default(vs_drive drive);
+VSSS_API vs_model_def vs_model_def_default(vs_drive drive);
 // Loads the MJCF and checks every size against field.h: a difference is VS_FAIL naming body, value and the expected one.
-vs_status vs_model_load(const vs_model_def *def, vs_model **out, vs_error *err);
-void vs_model_free(vs_model *model);
-double vs_model_step_s(const vs_model *model);
-int vs_model_frame_hz(const vs_model *model);
-int vs_model_substeps(const vs_model *model);
-vs_drive vs_model_drive(const vs_model *model);
-const void *vs_model_mjmodel(const vs_model *model); // const mjModel *, for the renderer and the benchmarks
+VSSS_API vs_status vs_model_load(const vs_model_def *def, vs_model **out, vs_error *err);
+VSSS_API void vs_model_free(vs_model *model);
+VSSS_API double vs_model_step_s(const vs_model *model);
+VSSS_API int vs_model_frame_hz(const vs_model *model);
+VSSS_API int vs_model_substeps(const vs_model *model);
+VSSS_API vs_drive vs_model_drive(const vs_model *model);
+VSSS_API const void *vs_model_mjmodel(const vs_model *model); // const mjModel *, for the renderer and the benchmarks
 
 // Physical parameters of one episode (domain randomisation); the default is the nominal robot.
 typedef struct vs_sim_params {
@@ -54,24 +65,24 @@ typedef struct vs_sim_params {
   double push_per_s, push_mps; // random shoves: how often each robot gets one, and its largest change of velocity; 0, 0
   uint64_t push_seed;
 } vs_sim_params;
-vs_sim_params vs_sim_params_default(void);
+VSSS_API vs_sim_params vs_sim_params_default(void);
 
 typedef struct vs_sim vs_sim; // one match's state
-vs_status vs_sim_new(const vs_model *model, vs_sim **out, vs_error *err);
-void vs_sim_free(vs_sim *sim);
-void vs_sim_reset(vs_sim *sim,
-                  const vs_sim_params *params /* NULL: default */); // time 0, everything at rest, kick-off line
+VSSS_API vs_status vs_sim_new(const vs_model *model, vs_sim **out, vs_error *err);
+VSSS_API void vs_sim_free(vs_sim *sim);
+VSSS_API void
+vs_sim_reset(vs_sim *sim, const vs_sim_params *params /* NULL: default */); // time 0, everything at rest, kick-off line
 // Puts robots and ball where world says, robots at rest, wheels stopped, the ball rolling as fast as world says. Time goes on. No allocation, under 50 us.
-void vs_sim_place(vs_sim *sim, const vs_world *world);
+VSSS_API void vs_sim_place(vs_sim *sim, const vs_world *world);
 // One frame (1/30 s, or the model's) with the commands held. VS_FAIL: MuJoCo reported a warning (NaN, too many contacts), by name.
-vs_status vs_sim_frame(vs_sim *sim, const vs_wheels command[VS_TEAMS][VS_TEAM_SIZE], vs_error *err);
-void vs_sim_world(const vs_sim *sim, vs_world *out); // the truth
-void *vs_sim_mjdata(vs_sim *sim);                    // mjData *, for the renderer
+VSSS_API vs_status vs_sim_frame(vs_sim *sim, const vs_wheels command[VS_TEAMS][VS_TEAM_SIZE], vs_error *err);
+VSSS_API void vs_sim_world(const vs_sim *sim, vs_world *out); // the truth
+VSSS_API void *vs_sim_mjdata(vs_sim *sim);                    // mjData *, for the renderer
 
-size_t vs_sim_state_size(const vs_sim *sim);
-void vs_sim_save(const vs_sim *sim, void *state);
+VSSS_API size_t vs_sim_state_size(const vs_sim *sim);
+VSSS_API void vs_sim_save(const vs_sim *sim, void *state);
 // Continues bit-identically. VS_FAIL: a number that cannot be; the simulator is then as it was.
-vs_status vs_sim_restore(vs_sim *sim, const void *state, vs_error *err);
+VSSS_API vs_status vs_sim_restore(vs_sim *sim, const void *state, vs_error *err);
 
 #ifdef __cplusplus
 }

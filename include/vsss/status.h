@@ -1,7 +1,11 @@
+// Stable: part of libvsss (deploy/docs/library.md).
+//
 // How a failure is reported. The library never prints and never exits: every function that can fail returns a
 // vs_status and, where the caller passes one, fills a vs_error with one line that names the thing and the fix.
 #ifndef VSSS_STATUS_H
 #define VSSS_STATUS_H
+
+#include "vsss/api.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -19,10 +23,11 @@ typedef struct vs_error {
 } vs_error;
 
 // Fills err (may be NULL) and returns status. Use as: return vs_fail(err, VS_FAIL, "%s: %s", path, why);
-vs_status vs_fail(vs_error *err, vs_status status, const char *format, ...) __attribute__((format(printf, 3, 4)));
+VSSS_API vs_status vs_fail(vs_error *err, vs_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 // Puts "prefix: " before the text err already has; returns err's status (VS_FAIL where err is NULL).
-vs_status vs_fail_prefix(vs_error *err, const char *format, ...) __attribute__((format(printf, 2, 3)));
+VSSS_API vs_status vs_fail_prefix(vs_error *err, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 #ifdef __cplusplus
 }

@@ -1,3 +1,5 @@
+// Stable: part of libvsss (deploy/docs/library.md).
+//
 // Many matches over threads for a trainer: the caller owns the big arrays, rows are written in place, episodes restart
 // by themselves, nothing is allocated after start, and results do not depend on the number of threads.
 //
@@ -9,6 +11,7 @@
 #ifndef VSSS_VECENV_H
 #define VSSS_VECENV_H
 
+#include "vsss/api.h"
 #include "vsss/env.h"
 
 #ifdef __cplusplus
@@ -45,35 +48,37 @@ typedef struct vs_vecenv_buffers {
   int32_t *event; // [envs][2]: kind and team of the step's event (vs_event), team -1 without one (may be NULL)
 } vs_vecenv_buffers;
 
-vs_status vs_vecenv_new(const vs_vecenv_def *def, vs_vecenv **out, vs_error *err);
-void vs_vecenv_free(vs_vecenv *vec);
-int vs_vecenv_rows(const vs_vecenv *vec);
+VSSS_API vs_status vs_vecenv_new(const vs_vecenv_def *def, vs_vecenv **out, vs_error *err);
+VSSS_API void vs_vecenv_free(vs_vecenv *vec);
+VSSS_API int vs_vecenv_rows(const vs_vecenv *vec);
 // All matches at the start of episode 0; writes the observations.
-vs_status vs_vecenv_reset(vs_vecenv *vec, const vs_vecenv_buffers *buffers, vs_error *err);
+VSSS_API vs_status vs_vecenv_reset(vs_vecenv *vec, const vs_vecenv_buffers *buffers, vs_error *err);
 // Episode e of match i has the seed vs_seed_mix(match seed, e), and the match seed is vs_seed_mix(seed, i) unless it is
 // given. In force from the match's next start on, which is episode 0.
-void vs_vecenv_seed(vs_vecenv *vec, uint64_t seed);
-vs_status vs_vecenv_seed_match(vs_vecenv *vec, int env, uint64_t match_seed, vs_error *err);
+VSSS_API void vs_vecenv_seed(vs_vecenv *vec, uint64_t seed);
+VSSS_API vs_status vs_vecenv_seed_match(vs_vecenv *vec, int env, uint64_t match_seed, vs_error *err);
 // The matches with start[env] != 0 (NULL: all) leave their episode and begin the next one; writes their observations.
-vs_status vs_vecenv_start(vs_vecenv *vec, const uint8_t *start, const vs_vecenv_buffers *buffers, vs_error *err);
+VSSS_API vs_status vs_vecenv_start(vs_vecenv *vec, const uint8_t *start, const vs_vecenv_buffers *buffers,
+                                   vs_error *err);
 // One match begins an episode with exactly this seed (which is not counted); writes its observations.
-vs_status vs_vecenv_start_from(vs_vecenv *vec, int env, uint64_t seed, const vs_vecenv_buffers *buffers, vs_error *err);
+VSSS_API vs_status vs_vecenv_start_from(vs_vecenv *vec, int env, uint64_t seed, const vs_vecenv_buffers *buffers,
+                                        vs_error *err);
 // One decision of every match. A failure is the one of the lowest match; the others have been stepped.
-vs_status vs_vecenv_step(vs_vecenv *vec, const vs_vecenv_buffers *buffers, vs_error *err);
+VSSS_API vs_status vs_vecenv_step(vs_vecenv *vec, const vs_vecenv_buffers *buffers, vs_error *err);
 
 // The player of a team of one match from its next episode on (a frozen self, a scripted one); NULL: external.
-vs_status vs_vecenv_set_player(vs_vecenv *vec, int env, vs_team team, const char *uri, vs_error *err);
+VSSS_API vs_status vs_vecenv_set_player(vs_vecenv *vec, int env, vs_team team, const char *uri, vs_error *err);
 
-vs_env *vs_vecenv_env(vs_vecenv *vec, int env); // to look at between two steps; NULL: no such match
+VSSS_API vs_env *vs_vecenv_env(vs_vecenv *vec, int env); // to look at between two steps; NULL: no such match
 
-uint64_t vs_vecenv_hash(const vs_vecenv *vec); // of all true worlds of the present episodes
+VSSS_API uint64_t vs_vecenv_hash(const vs_vecenv *vec); // of all true worlds of the present episodes
 
 // Snapshots, to be restored into a vecenv of the same def and players (any number of threads). Size 0: some player
 // cannot be snapshotted.
-size_t vs_vecenv_state_size(const vs_vecenv *vec);
-void vs_vecenv_save(const vs_vecenv *vec, void *state);
+VSSS_API size_t vs_vecenv_state_size(const vs_vecenv *vec);
+VSSS_API void vs_vecenv_save(const vs_vecenv *vec, void *state);
 // VS_FAIL: a number that cannot be, as in a damaged file; the vecenv must then be reset.
-vs_status vs_vecenv_restore(vs_vecenv *vec, const void *state, vs_error *err);
+VSSS_API vs_status vs_vecenv_restore(vs_vecenv *vec, const void *state, vs_error *err);
 
 #ifdef __cplusplus
 }

@@ -1,3 +1,5 @@
+// Stable: part of libvsss (deploy/docs/library.md).
+//
 // The nouns: what every module passes on and none owns. One plain struct; the simulator or the tracker makes it, all
 // others read it.
 //
@@ -9,6 +11,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "vsss/api.h"
 #include "vsss/status.h"
 
 #ifdef __cplusplus
@@ -83,20 +86,20 @@ typedef struct vs_game {
   vs_event last_event;
 } vs_game;
 
-vs_pose vs_pose_rotate_pi(vs_pose pose);
-void vs_world_for_team(const vs_world *absolute, vs_team team, vs_world *view); // its own inverse
-void vs_game_for_team(const vs_game *absolute, vs_team team, vs_game *view);
+VSSS_API vs_pose vs_pose_rotate_pi(vs_pose pose);
+VSSS_API void vs_world_for_team(const vs_world *absolute, vs_team team, vs_world *view); // its own inverse
+VSSS_API void vs_game_for_team(const vs_game *absolute, vs_team team, vs_game *view);
 
 // All numbers finite and within 1 m outside the field; names the first that is not.
-vs_status vs_world_check(const vs_world *world, vs_error *err);
+VSSS_API vs_status vs_world_check(const vs_world *world, vs_error *err);
 
 // FNV-1a over the bits of every number (not the padding): equal worlds, equal hash.
-uint64_t vs_world_hash(uint64_t hash, const vs_world *world); // start with VS_HASH_START
+VSSS_API uint64_t vs_world_hash(uint64_t hash, const vs_world *world); // start with VS_HASH_START
 #define VS_HASH_START UINT64_C(0xcbf29ce484222325)
-uint64_t vs_hash_bytes(uint64_t hash, const void *data, unsigned long size);
+VSSS_API uint64_t vs_hash_bytes(uint64_t hash, const void *data, unsigned long size);
 
-const char *vs_event_name(vs_event_kind kind); // "goal", "free ball", ...
-const char *vs_team_name(vs_team team);        // "blue", "yellow"
+VSSS_API const char *vs_event_name(vs_event_kind kind); // "goal", "free ball", ...
+VSSS_API const char *vs_team_name(vs_team team);        // "blue", "yellow"
 
 #ifdef __cplusplus
 }

@@ -14,6 +14,9 @@
 #ifndef VSSS_PREFIX
 #define VSSS_PREFIX "/usr/local"
 #endif
+#ifndef VSSS_LIBDIR // below the prefix
+#define VSSS_LIBDIR "lib"
+#endif
 
 // Where the running executable and the library this code is in lie; "" where the system does not tell.
 static void folder_of(const char *path, char *out, size_t size) {
@@ -41,28 +44,15 @@ static void library_folder(char *out, size_t size) {
     folder_of(info.dli_fname, out, size);
 }
 
-vs_status vs_path_find(const char *relative, char *out, size_t out_size, vs_error *err) {
-  char program[PATH_MAX], library[PATH_MAX];
-  executable_folder(program, sizeof program);
-  library_folder(library, sizeof library);
-  const char *home = getenv("VSSS_HOME");
-  // In a checkout the program lies beside models/, its tests up to four folders below; installed, in PREFIX/bin beside
-  // PREFIX/share/vsss, the library in PREFIX/lib.
-  const struct {
-    const char *folder, *below;
-  } places[] = {
-      {home ? home : "", ""},
-      {program, ""},
-      {program, "/.."},
-      {program, "/../.."},
-      {program, "/../../.."},
-      {program, "/../../../.."},
-      {program, "/../share/vsss"},
-      {library, "/../share/vsss"},
-      {VSSS_PREFIX, "/share/vsss"},
-  };
+typedef struct place {
+  const char *folder, *below;
+} place;
+
+// Looks for a file in places, in order.
+static vs_status find_in(const place *places, size_t count, const char *relative, char *out, size_t out_size,
+                         vs_error *err) {
   char tried[384] = "";
-  for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+  for (size_t i = 0; i < count; i++) {
     char candidate[PATH_MAX + 512];
     if (!places[i].folder[0]) continue;
     snprintf(candidate, sizeof candidate, "%s%s/%s", places[i].folder, places[i].below, relative);
@@ -75,6 +65,44 @@ vs_status vs_path_find(const char *relative, char *out, size_t out_size, vs_erro
     snprintf(tried + used, sizeof tried - used, "%s%.120s", used ? ", " : "", candidate);
   }
   return vs_fail(err, VS_FAIL, "%s: not found (tried %s); set VSSS_HOME to the folder that holds it", relative, tried);
+}
+
+vs_status vs_path_find(const char *relative, char *out, size_t out_size, vs_error *err) {
+  char program[PATH_MAX], library[PATH_MAX];
+  executable_folder(program, sizeof program);
+  library_folder(library, sizeof library);
+  const char *home = getenv("VSSS_HOME");
+  // In a checkout the program lies beside models/, its tests up to five folders below; installed, in PREFIX/bin beside
+  // PREFIX/share/vsss, the library in PREFIX/lib or a folder of that.
+  const place places[] = {
+      {home ? home : "", ""},
+      {program, ""},
+      {program, "/.."},
+      {program, "/../.."},
+      {program, "/../../.."},
+      {program, "/../../../.."},
+      {program, "/../../../../.."},
+      {program, "/../share/vsss"},
+      {library, "/../share/vsss"},
+      {library, "/../../share/vsss"},
+      {VSSS_PREFIX, "/share/vsss"},
+  };
+  return find_in(places, sizeof places / sizeof *places, relative, out, out_size, err);
+}
+
+vs_status vs_path_library(const char *built, char *out, size_t out_size, vs_error *err) {
+  if (vs_path_find(built, out, out_size, err) == VS_OK) return VS_OK;
+  char program[PATH_MAX], library[PATH_MAX];
+  executable_folder(program, sizeof program);
+  library_folder(library, sizeof library);
+  const char *name = strrchr(built, '/');
+  const place places[] = {
+      {program, "/../" VSSS_LIBDIR "/vsss"},
+      {program, "/../lib/vsss"},
+      {library, "/vsss"},
+      {VSSS_PREFIX, "/" VSSS_LIBDIR "/vsss"},
+  };
+  return find_in(places, sizeof places / sizeof *places, name ? name + 1 : built, out, out_size, err);
 }
 
 vs_status vs_path_make_folder(const char *path, unsigned mode, vs_error *err) {
@@ -94,9 +122,8 @@ vs_status vs_path_make_folder(const char *path, unsigned mode, vs_error *err) {
 
 vs_status vs_module_load(const char *name, const char *debian_package, void **handle, vs_error *err) {
   char relative[128], path[PATH_MAX];
-  // Built modules lie in build/lib of a checkout, in PREFIX/share/vsss/build/lib when installed.
   snprintf(relative, sizeof relative, "build/lib/vsss_%s.so", name);
-  if (vs_path_find(relative, path, sizeof path, NULL) != VS_OK)
+  if (vs_path_library(relative, path, sizeof path, NULL) != VS_OK)
     return vs_fail(err, VS_FAIL, "this build has no %s support: install %s and run make again", name, debian_package);
   *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
   if (!*handle) return vs_fail(err, VS_FAIL, "%s: %s", path, dlerror());

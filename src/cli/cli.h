@@ -78,4 +78,11 @@ void vs_progress_start(vs_progress *progress);
 void vs_progress_show(vs_progress *progress, double fraction, const char *text);
 void vs_progress_clear(vs_progress *progress);
 
+// The commit this program was built from, set by main; "unknown" in its tests.
+extern const char *vs_cli_commit;
+// Prints version, commit, libraries and features on stdout.
+void vs_cli_version(void);
+// Lets nothing be heard of ONNX Runtime's first session (policy.h).
+void vs_cli_quiet_first_session(void);
+
 #endif

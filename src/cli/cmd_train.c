@@ -29,7 +29,7 @@ typedef struct options {
 
 typedef struct session {
   const options *opt;
-  char folder[PATH_MAX - 64], command[1024], commit[64];
+  char folder[PATH_MAX - 64], command[1024];
   vs_group *group; // NULL: alone
   bool first;      // rank 0: shows, logs, saves
   bool continued;  // --resume of this folder
@@ -88,18 +88,6 @@ static vs_status settings(const options *o, vs_train_def *def, vs_error *err) {
   return s == VS_OK ? vs_train_def_check(def, err) : s;
 }
 
-// The commit of the sources the program runs beside, for the policy's metadata.
-static void find_commit(char *out, size_t size) {
-  snprintf(out, size, "unknown");
-  FILE *f = popen("git describe --always --dirty --abbrev=12 2>/dev/null", "r");
-  char line[64];
-  if (f && fgets(line, sizeof line, f)) {
-    line[strcspn(line, "\n")] = '\0';
-    snprintf(out, size, "%s", line);
-  }
-  if (f) pclose(f);
-}
-
 static vs_status save_checkpoint(session *s, vs_error *err) {
   char path[PATH_MAX];
   snprintf(path, sizeof path, "%s/checkpoint", s->folder);
@@ -109,7 +97,7 @@ static vs_status save_checkpoint(session *s, vs_error *err) {
 static vs_status save(session *s, vs_error *err) {
   char path[PATH_MAX];
   vs_status status = save_checkpoint(s, err);
-  const char *const notes[] = {"command", s->command, "commit", s->commit, "score", s->scores, NULL};
+  const char *const notes[] = {"command", s->command, "commit", vs_cli_commit, "score", s->scores, NULL};
   snprintf(path, sizeof path, "%s/policy.onnx", s->folder);
   if (status == VS_OK) status = vs_train_export(s->train, path, true, notes, err);
   if (status == VS_OK && s->opt->export) status = vs_train_export(s->train, s->opt->export, true, notes, err);
@@ -277,7 +265,7 @@ static vs_status prepare(session *s, const vs_train_def *def, vs_error *err) {
     if (status == VS_OK && note[0]) printf("%s\n", note);
     if (status == VS_OK) raise_limit(s);
   }
-  if (status == VS_OK && s->first) status = vs_run_folder_note(s->folder, s->command, s->commit, err);
+  if (status == VS_OK && s->first) status = vs_run_folder_note(s->folder, s->command, vs_cli_commit, err);
   if (status != VS_OK || !s->first) return status;
   char text[VS_TRAIN_TEXT_MAX];
   snprintf(path, sizeof path, "%s/settings.ini", s->folder);
@@ -293,7 +281,6 @@ static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
   s.continued = o->resume && !resumes_file(o);
   snprintf(s.folder, sizeof s.folder, "%s", s.continued ? o->resume : o->run);
   vs_run_folder_command(argc, argv, s.command, sizeof s.command);
-  find_commit(s.commit, sizeof s.commit);
   vs_train_def def;
   vs_status status = vs_cli_await_interrupts(announce_stop, save_now, &s, err);
   if (status == VS_OK) status = settings(o, &def, err);

@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "cli.h"
 #include "player_lcm.h"
+#include "vsss_commit.h"
 
 typedef struct command {
   const char *name;
@@ -31,22 +32,60 @@ static const command commands[] = {
 static void print_commands(FILE *out) {
   fprintf(out, "usage: vsss COMMAND [flags]\n\nIEEE Very Small Size Soccer: simulate, learn, play on the field.\n\n");
   for (const command *c = commands; c->name; c++) fprintf(out, "  %-12s %s\n", c->name, c->help);
-  fprintf(out, "\n'vsss COMMAND --help' tells the flags of one.\n");
+  fprintf(out, "\n'vsss COMMAND --help' tells the flags of one, 'vsss --version' what this build is made of.\n");
+}
+
+static const command *find(const char *name) {
+  for (const command *c = commands; c->name; c++)
+    if (!strcmp(name, c->name)) return c;
+  return NULL;
+}
+
+// The known command that differs by one letter added, left out, changed or swapped with the next; else NULL.
+static const char *nearest(const char *name) {
+  for (const command *c = commands; c->name; c++) {
+    const char *a = name, *b = c->name;
+    while (*a && *a == *b) a++, b++;
+    if (!strcmp(*a ? a + 1 : a, b) || !strcmp(a, *b ? b + 1 : b)) return c->name;
+    if (*a && *b && (!strcmp(a + 1, b + 1) || (a[0] == b[1] && a[1] == b[0] && !strcmp(a + 2, b + 2)))) return c->name;
+  }
+  return NULL;
+}
+
+static int unknown(const char *name) {
+  const char *near = nearest(name);
+  if (near)
+    fprintf(stderr, "vsss: unknown command '%s'; did you mean '%s'?\n", name, near);
+  else
+    fprintf(stderr, "vsss: unknown command '%s'; 'vsss --help' lists them\n", name);
+  return VS_USAGE;
+}
+
+static int help(int argc, char **argv) {
+  if (argc < 2) {
+    print_commands(stdout);
+    return 0;
+  }
+  const command *c = find(argv[1]);
+  char *words[] = {argv[1], "--help", NULL};
+  return c ? c->run(2, words) : unknown(argv[1]);
 }
 
 int main(int argc, char **argv) {
   if (!vs_cli_begin()) return VS_USAGE;
+  vs_cli_commit = VSSS_COMMIT;
+  vs_cli_quiet_first_session();
   vs_player_register("lcm:", PLAYER_LCM_HELP, player_lcm_open);
   if (argc < 2) {
     print_commands(stderr);
     return VS_USAGE;
   }
-  if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h") || !strcmp(argv[1], "help")) {
-    print_commands(stdout);
-    return vs_cli_end("help", 0);
+  if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h") || !strcmp(argv[1], "help"))
+    return vs_cli_end("help", help(argc - 1, argv + 1));
+  if (!strcmp(argv[1], "--version") || !strcmp(argv[1], "-V") || !strcmp(argv[1], "version")) {
+    vs_cli_version();
+    return vs_cli_end("version", 0);
   }
-  for (const command *c = commands; c->name; c++)
-    if (!strcmp(argv[1], c->name)) return vs_cli_end(c->name, c->run(argc - 1, argv + 1));
-  fprintf(stderr, "vsss: unknown command '%s'; 'vsss --help' lists them\n", argv[1]);
-  return VS_USAGE;
+  const command *c = find(argv[1]);
+  return c ? vs_cli_end(c->name, c->run(argc - 1, argv + 1)) : unknown(argv[1]);
 }

@@ -35,8 +35,6 @@ vs_status vs_net_init(vs_net *net, const vs_net_shape *shape, vs_error *err) {
   return VS_OK;
 }
 
-int vs_net_outputs(const vs_net *net, int which) { return which == VS_ACTOR ? 2 * net->shape.actions : 1; }
-
 // Columns (where there are at least as many rows) or rows of m made orthonormal by Gram-Schmidt, in double, from normal
 // random numbers. m: count vectors of `length` doubles, count <= length.
 static void orthonormal(double *m, int count, int length, vs_rng *rng) {

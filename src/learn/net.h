@@ -35,7 +35,10 @@ typedef struct vs_net {
 } vs_net;
 
 vs_status vs_net_init(vs_net *net, const vs_net_shape *shape, vs_error *err);
-int vs_net_outputs(const vs_net *net, int which); // of the head: 2 * actions, or 1
+// Of the head: 2 * actions, or 1. Inline, for the module of libtorch.
+static inline int vs_net_outputs(const vs_net *net, int which) {
+  return which == VS_ACTOR ? 2 * net->shape.actions : 1;
+}
 
 // Orthogonal weights of gain sqrt 2 (heads: 0.01 and 1; Saxe et al. 2014), zero biases but the actor's last, which
 // makes alpha = beta = first_shape (> 1) where the weights say nothing.

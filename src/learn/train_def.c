@@ -262,7 +262,7 @@ vs_status vs_train_def_check(const vs_train_def *def, vs_error *err) {
   if (s != VS_OK) return s;
   if (strcmp(def->learner, "own") != 0 && strcmp(def->learner, "torch") != 0)
     return vs_fail(err, VS_USAGE, "learner = %s: expected own or torch", def->learner);
-  vs_precision precision;
+  vs_precision precision = VS_PRECISION_FP32;
   s = vs_train_precision(def, &precision, err);
   if (s != VS_OK) return s;
   if (precision == VS_PRECISION_BF16 && !strcmp(def->learner, "torch"))

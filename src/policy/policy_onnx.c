@@ -3,7 +3,6 @@
 // whatever else runs), preallocated tensors.
 #include <dlfcn.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <limits.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -16,6 +15,13 @@
 
 #include "policy_internal.h"
 #include "vsss/paths.h"
+
+static void (*before_first)(void), (*after_first)(void);
+
+void vs_player_first_session(void (*before)(void), void (*after)(void)) {
+  before_first = before;
+  after_first = after;
+}
 
 enum { API = 20, ROWS = VS_TEAM_SIZE, WARM_UPS = 10 };
 
@@ -66,26 +72,41 @@ static vs_status act(vs_obs_player *base, const float *obs, int rows, float *act
   return s;
 }
 
-// The library that $VSSS_ONNXRUNTIME names, the one that setup.sh put under build/ (Debian 12), the system's (Debian 13).
-static vs_status load_library(onnx_player *p, vs_error *err) {
+// The library that $VSSS_ONNXRUNTIME names, the one that came with vsss (Debian 12), the system's (Debian 13).
+static const OrtApiBase *load_library(vs_error *err) {
   char path[PATH_MAX];
   void *library = NULL;
   const char *given = getenv("VSSS_ONNXRUNTIME");
-  if (given && !(library = dlopen(given, RTLD_NOW | RTLD_LOCAL)))
-    return vs_fail(err, VS_FAIL, "%s: VSSS_ONNXRUNTIME=%s cannot be loaded: %s", p->file, given, dlerror());
-  if (!library && vs_path_find("build/onnxruntime/lib/libonnxruntime.so.1", path, sizeof path, NULL) == VS_OK)
+  if (given && !(library = dlopen(given, RTLD_NOW | RTLD_LOCAL))) {
+    vs_fail(err, VS_FAIL, "VSSS_ONNXRUNTIME=%s cannot be loaded: %s", given, dlerror());
+    return NULL;
+  }
+  if (!library && vs_path_library("build/onnxruntime/lib/libonnxruntime.so.1", path, sizeof path, NULL) == VS_OK)
     library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
   static const char *const names[] = {"libonnxruntime.so.1", "libonnxruntime.so.1.21", "libonnxruntime.so"};
   for (size_t i = 0; !library && i < sizeof names / sizeof *names; i++)
     library = dlopen(names[i], RTLD_NOW | RTLD_LOCAL);
-  if (!library)
-    return vs_fail(err, VS_FAIL, "%s: libonnxruntime.so.1 not found: run 'sudo sh deploy/setup.sh'", p->file);
+  if (!library) {
+    vs_fail(err, VS_FAIL, "libonnxruntime.so.1 not found: run 'sudo sh deploy/setup.sh'");
+    return NULL;
+  }
   const OrtApiBase *(*base)(void) = (const OrtApiBase *(*)(void))dlsym(library, "OrtGetApiBase");
-  if (!base) return vs_fail(err, VS_FAIL, "%s: libonnxruntime.so.1 has no OrtGetApiBase", p->file);
-  p->ort = base()->GetApi(API);
+  if (!base) vs_fail(err, VS_FAIL, "libonnxruntime.so.1 has no OrtGetApiBase");
+  return base ? base() : NULL;
+}
+
+const char *vs_onnxruntime_version(void) {
+  const OrtApiBase *base = load_library(NULL);
+  return base ? base->GetVersionString() : NULL;
+}
+
+static vs_status open_library(onnx_player *p, vs_error *err) {
+  const OrtApiBase *base = load_library(err);
+  if (!base) return vs_fail_prefix(err, "%s", p->file);
+  p->ort = base->GetApi(API);
   if (!p->ort)
     return vs_fail(err, VS_FAIL, "%s: ONNX Runtime %s is older than 1.%d: run 'sudo sh deploy/setup.sh'", p->file,
-                   base()->GetVersionString(), API);
+                   base->GetVersionString(), API);
   return VS_OK;
 }
 
@@ -105,21 +126,15 @@ static vs_status set_options(onnx_player *p, OrtSessionOptions *options, vs_erro
   return check(p, s, "session options", err);
 }
 
-// Debian 13's ONNX Runtime says with the first session of a process, on 1,100 lines of standard error, that libonnx had
-// registered every operator already. Nothing is wrong, so nobody hears it; what fails is told by the status.
+// The first session of a process is made alone, between the two calls of vs_player_first_session.
 static OrtStatus *create_session(onnx_player *p, const OrtSessionOptions *options) {
   static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
   static bool registered;
   pthread_mutex_lock(&lock);
-  int heard = registered ? -1 : fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0), nowhere = -1;
-  if (heard >= 0) nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-  if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);
+  bool first = !registered;
+  if (first && before_first) before_first();
   OrtStatus *status = p->ort->CreateSession(p->env, p->file, options, &p->session);
-  if (nowhere >= 0) {
-    dup2(heard, STDERR_FILENO);
-    close(nowhere);
-  }
-  if (heard >= 0) close(heard);
+  if (first && after_first) after_first();
   registered = registered || !status;
   pthread_mutex_unlock(&lock);
   return status;
@@ -217,7 +232,7 @@ static vs_status make_tensors(onnx_player *p, vs_error *err) {
 }
 
 static vs_status prepare(onnx_player *p, vs_error *err) {
-  vs_status s = load_library(p, err);
+  vs_status s = open_library(p, err);
   if (s == VS_OK) s = load_model(p, err);
   if (s == VS_OK) s = check_contract(p, err);
   if (s == VS_OK) s = check_port(p, true, "observation", VS_OBS_SIZE, err);

@@ -15,6 +15,8 @@
 #define CONTACT_SUBSTEPS 5
 #define PLANAR_SUBSTEPS  5
 
+const char *vs_mujoco_version(void) { return mj_versionString(); }
+
 const char *vs_drive_name(vs_drive drive) { return drive == VS_DRIVE_PLANAR ? "planar" : "contact"; }
 
 vs_status vs_drive_parse(const char *name, vs_drive *out, vs_error *err) {
@@ -234,7 +236,7 @@ vs_status vs_model_load(const vs_model_def *def, vs_model **out, vs_error *err) 
   }
   if (def->frame_hz < 0 || def->frame_hz > 1000)
     return vs_fail(err, VS_USAGE, "%d frames per second: use 1 to 1000, or 0 for the camera's", def->frame_hz);
-  vs_outline_install();
+  if (def->drive == VS_DRIVE_PLANAR) vs_outline_install();
   vs_model *model = calloc(1, sizeof *model);
   if (!model) return vs_fail(err, VS_FAIL, "out of memory");
   model->drive = def->drive;
