@@ -76,15 +76,22 @@ $(B)/libcli.a: $(CLI_OBJ)
 # The library for other programs: what the functions marked VSSS_API need, and nothing else.
 $(B)/$(LIBRARY): $(B)/libvsss.a
 	@echo '  LD    $@'
-	@readelf -sW $< | awk '$$5 == "GLOBAL" && $$6 == "DEFAULT" && $$7 != "UND" {print "-Wl,-u," $$8}' | sort -u > $@.exports
-	$(Q)$(CC) $(SAN) $(LDFLAGS) -shared -Wl,-soname,$(SONAME) $(if $(SAN),,-Wl,-z,defs) -Wl,--as-needed -o $@ @$@.exports $< $(LDLIBS_ALL)
+	@readelf -sW $(LIB_SRC:%.c=$(B)/%.o) | awk '$$4 == "FUNC" && $$5 == "GLOBAL" && $$6 == "DEFAULT" && $$7 != "UND" {print $$8}' | sort -u > $@.names
+	@sed 's/^/-Wl,-u,/' $@.names > $@.wanted
+	@{ echo '{ global:'; sed 's/$$/;/' $@.names; echo 'local: *; };'; } > $@.map
+	$(Q)$(CC) $(SAN) $(LDFLAGS) -shared -Wl,-soname,$(SONAME) $(if $(SAN),,-Wl,-z,defs) -Wl,--as-needed \
+	  -Wl,--version-script,$@.map -o $@ @$@.wanted $< $(LDLIBS_ALL)
 	@ln -sf $(LIBRARY) $(B)/$(SONAME)
 	@ln -sf $(SONAME) $(B)/libvsss.so
 
 $(B)/libvsss.so: $(B)/$(LIBRARY) ;
 library: $(B)/libvsss.so
 
-$(B)/%.o: %.c build/features.mk | $(GENERATED)
+# Written when the flags change, so that everything is compiled again.
+$(shell mkdir -p $(B); [ '$(subst ','\'',$(CC) $(CFLAGS_ALL))' = "$$(cat $(B)/flags 2>/dev/null)" ] || \
+  printf '%s\n' '$(subst ','\'',$(CC) $(CFLAGS_ALL))' > $(B)/flags)
+
+$(B)/%.o: %.c build/features.mk $(B)/flags | $(GENERATED)
 	@mkdir -p $(@D)
 	@echo '  CC    $<'
 	$(Q)$(CC) $(CFLAGS_ALL) -MMD -MP -c -o $@ $<

@@ -11,7 +11,7 @@ $(shell mkdir -p build/gen; line='#define VSSS_COMMIT "$(COMMIT)"'; \
   [ "$$line" = "$$(cat build/gen/vsss_commit.h 2>/dev/null)" ] || printf '%s\n' "$$line" > build/gen/vsss_commit.h)
 
 FEATURES := LCM APRILTAG OPENCV EGL ONNXRUNTIME ONEDNN OPENBLAS TORCH MPI
-list = $(shell echo '$(1)' | sed 's/ /, /g' | tr 'A-Z' 'a-z')
+list = $(shell echo '$(strip $(1))' | sed 's/ /, /g' | tr 'A-Z' 'a-z')
 $(B)/src/cli/version.o: CFLAGS_ALL += \
   -DVSSS_FEATURES='"$(call list,$(foreach f,$(FEATURES),$(if $(HAVE_$(f)),$(f))))"' \
   -DVSSS_MISSING='"$(call list,$(foreach f,$(FEATURES),$(if $(HAVE_$(f)),,$(f))))"'

@@ -1,10 +1,12 @@
-// src/cli/main.c and src/cli/args.c, through the real binary
+// src/cli/main.c, src/cli/args.c and src/cli/version.c, through the real binary
 #include "assert_near.h"
 #include "run_vsss.h"
+#include "vsss/sim.h"
+#include "vsss/version.h"
 
 static void unknown_command_is_named_with_status_2(void **state) {
   (void)state;
-  assert_refused("smi", 2, "unknown command 'smi'");
+  assert_refused("smi", 2, "unknown command 'smi'; did you mean 'sim'?");
 }
 
 static void no_command_lists_the_commands_with_status_2(void **state) {
@@ -36,11 +38,47 @@ static void every_command_has_help(void **state) {
   assert_true(commands >= 1);
 }
 
+static void help_of_a_command_is_its_own_help(void **state) {
+  (void)state;
+  static vsss_run by_word, by_flag;
+  vsss(&by_word, "help sim");
+  vsss(&by_flag, "sim --help");
+  assert_int_equal(by_word.status, 0);
+  assert_string_equal(by_word.out, by_flag.out);
+  assert_refused("help smi", 2, "did you mean 'sim'?");
+}
+
+static void a_slip_of_one_letter_is_told_what_was_meant(void **state) {
+  (void)state;
+  assert_refused("trian", 2, "did you mean 'train'?");
+  assert_refused("eva", 2, "did you mean 'eval'?");
+  assert_refused("fieldd", 2, "did you mean 'field'?");
+  assert_refused("plat", 2, "did you mean 'plot'?");
+  assert_refused("xyz", 2, "'vsss --help' lists them");
+}
+
+static void version_names_release_commit_and_libraries(void **state) {
+  (void)state;
+  static vsss_run run;
+  char release[32], mujoco[64];
+  vsss(&run, "--version");
+  assert_int_equal(run.status, 0);
+  snprintf(release, sizeof release, "vsss %d.%d.%d (commit ", VSSS_VERSION_MAJOR, VSSS_VERSION_MINOR,
+           VSSS_VERSION_PATCH);
+  assert_int_equal(strncmp(run.out, release, strlen(release)), 0);
+  snprintf(mujoco, sizeof mujoco, "MuJoCo %s, ONNX Runtime ", vs_mujoco_version());
+  assert_non_null(strstr(run.out, mujoco));
+  assert_non_null(strstr(run.out, "built with: "));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(unknown_command_is_named_with_status_2),
       cmocka_unit_test(no_command_lists_the_commands_with_status_2),
       cmocka_unit_test(every_command_has_help),
+      cmocka_unit_test(help_of_a_command_is_its_own_help),
+      cmocka_unit_test(a_slip_of_one_letter_is_told_what_was_meant),
+      cmocka_unit_test(version_names_release_commit_and_libraries),
   };
   return cmocka_run_group_tests_name("cli/main", tests, NULL, NULL);
 }
