@@ -82,7 +82,8 @@ VSSS_API void vs_place(vs_placement_mode mode, const vs_event *event, const vs_w
 // Whether a team may stand like this at that restart: inside the field, on nobody and not on the ball's place, where the
 // rules let it, and with the robot that the restart needs (taker, keeper on its line). Absolute frame. VS_FAIL says which
 // robot and why. The fixed positions of vs_place pass.
-vs_status vs_placement_check(const vs_event *event, vs_team team, const vs_pose pose[VS_TEAM_SIZE], vs_error *err);
+VSSS_API vs_status vs_placement_check(const vs_event *event, vs_team team, const vs_pose pose[VS_TEAM_SIZE],
+                                      vs_error *err);
 
 // Open play, for the starts of training episodes: robots anywhere with any heading, the ball anywhere outside the areas
 // (a third of the time at a wall or in a corner) and, but for those, rolling at up to VS_OPEN_PLAY_MPS.
