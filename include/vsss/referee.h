@@ -2,8 +2,9 @@
 //
 // World in, event out; and where the pieces stand after an event. Pure: reads no clock, moves nothing.
 //
-// Two sets of rules, each a table: the paper's (section V: goal, penalty, free ball) and the league's (the automatic
+// Sets of rules, each a table: the paper's (section V: goal, penalty, free ball) and the league's (the automatic
 // referee of the simulation league, VSSSLeague/VSSReferee, tag LARC2022: also goal kicks, areas judged play by play).
+// Two more follow the texts for real robots, Serie A 2023 and LARC 2026, as far as positions show it.
 // The league's pauses between whistle and restart are left out: a restart happens at once.
 #ifndef VSSS_REFEREE_H
 #define VSSS_REFEREE_H
@@ -16,7 +17,7 @@
 extern "C" {
 #endif
 
-typedef enum vs_rules { VS_RULES_PAPER, VS_RULES_LEAGUE } vs_rules;
+typedef enum vs_rules { VS_RULES_PAPER, VS_RULES_LEAGUE, VS_RULES_SERIE_A_2023, VS_RULES_LARC_2026 } vs_rules;
 typedef enum vs_placement_mode { VS_PLACEMENT_PAPER, VS_PLACEMENT_RANDOM } vs_placement_mode;
 
 // Paper: a ball that has not moved 2 cm for 10 s. League: a ball slower than 0.1 m/s for 5 s, a foul in an area for 3 s,
@@ -27,6 +28,7 @@ typedef enum vs_placement_mode { VS_PLACEMENT_PAPER, VS_PLACEMENT_RANDOM } vs_pl
 #define VS_LEAGUE_STUCK_S       5.0
 #define VS_LEAGUE_FOUL_S        3.0
 #define VS_LEAGUE_NEAR_BALL_M   (1.5 * 0.075)
+#define VS_SERIE_A_PATIENCE_S   10.0 // Serie A, LARC: stalemates, and how long a keeper may hold the ball
 #define VS_LEAGUE_GOAL_KICK_X_M 0.60
 #define VS_LEAGUE_GOAL_KICK_Y_M 0.35
 
@@ -57,7 +59,10 @@ typedef struct vs_referee {
   // League. The team in whose area the ball is (-1: none) and what went wrong there since it came in: for how long two
   // defenders, two attackers have been in the area, and the match time at which this was last so (-1: not yet).
   int play_area;
+  // Serie A and LARC: for how long the ball there has been uncontested, contested, and when a second defender, a second
+  // attacker interfered.
   double defence_s, attack_s, defence_seen_s, attack_seen_s;
+  int free_balls; // in a row
 } vs_referee;
 
 // game.last_event is then the first KICK_OFF, which wants vs_place. VS_USAGE: a number out of range.
@@ -90,7 +95,8 @@ VSSS_API vs_status vs_placement_check(const vs_event *event, vs_team team, const
 #define VS_OPEN_PLAY_MPS 1.0
 VSSS_API void vs_place_open_play(const vs_world *before, vs_rng *rng, vs_world *out);
 
-VSSS_API vs_status vs_rules_parse(const char *name, vs_rules *out, vs_error *err);              // "paper", "league"
+// "paper", "league", "serie-a-2023", "larc-2026"
+VSSS_API vs_status vs_rules_parse(const char *name, vs_rules *out, vs_error *err);
 VSSS_API vs_status vs_placement_parse(const char *name, vs_placement_mode *out, vs_error *err); // "paper", "random"
 
 #ifdef __cplusplus

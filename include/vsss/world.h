@@ -74,6 +74,7 @@ typedef struct vs_event {
   vs_event_kind kind;
   vs_team team;  // who scored, who takes the kick; blue where the kind has no team
   int quadrant;  // free ball and goal kick: 1 (+x +y) then counter-clockwise, in the absolute frame; else 0
+                 // (a free ball in the middle of the field: 0)
   double time_s; // of the match
 } vs_event;
 

@@ -16,14 +16,15 @@ vs_match_flags
 vs_match_flags_default(void); // contact drive, paper rules and their length, seed 1, a thread for each processor
 
 // Rows for a command's flag table; m is a vs_match_flags.
-#define VS_MATCH_FLAG_ROWS(m)                                                                                          \
-  {"seconds", VS_FLAG_REAL, &(m).seconds, "S", "length of a match, simulated; 0: 120, or the league's 600", 0, 7200},  \
-      {"seed", VS_FLAG_SEED, &(m).seed, "N", "same seed, same matches, for any number of threads", 0, 0},              \
-      {"threads", VS_FLAG_INT, &(m).threads, "N", "matches played at a time", 1, 1024},                                \
-      {"drive", VS_FLAG_TEXT, &(m).drive, "NAME", "contact (the reference) or planar (the fast twin)", 0, 0},          \
-      {"rules", VS_FLAG_TEXT, &(m).rules, "NAME", "paper or league", 0, 0},                                            \
-      {"placement", VS_FLAG_TEXT, &(m).placement, "NAME", "of restarts: paper or random", 0, 0}, {                     \
-    "realism", VS_FLAG_TEXT, &(m).realism, "FILE", "sensor and actuator model (INI); default: the paper's noise", 0, 0 \
+#define VS_MATCH_FLAG_ROWS(m)                                                                                            \
+  {"seconds", VS_FLAG_REAL, &(m).seconds, "S", "length of a match, simulated; 0: 120, or the league's 600", 0, 7200},    \
+      {"seed", VS_FLAG_SEED, &(m).seed, "N", "same seed, same matches, for any number of threads", 0, 0},                \
+      {"threads", VS_FLAG_INT, &(m).threads, "N", "matches played at a time", 1, 1024},                                  \
+      {"drive", VS_FLAG_TEXT, &(m).drive, "NAME", "contact (the reference) or planar (the fast twin)", 0, 0},            \
+      {"rules", VS_FLAG_TEXT, &(m).rules, "NAME", "paper, league (the network referee's), serie-a-2023 or larc-2026", 0, \
+       0},                                                                                                               \
+      {"placement", VS_FLAG_TEXT, &(m).placement, "NAME", "of restarts: paper or random", 0, 0}, {                       \
+    "realism", VS_FLAG_TEXT, &(m).realism, "FILE", "sensor and actuator model (INI); default: the paper's noise", 0, 0   \
   }
 
 // Loads the model and fills env, whose players are left NULL, and flags->seconds where it was left to the rules. The

@@ -33,6 +33,8 @@ void vs_event_text(const vs_event *event, char *out, size_t size) {
     add(&t, " for %s", vs_team_name(event->team));
   else if (event->kind == VS_EVENT_GOAL_KICK)
     add(&t, " for %s in quadrant %d", vs_team_name(event->team), event->quadrant);
+  else if (event->kind == VS_EVENT_FREE_BALL && event->quadrant == 0)
+    add(&t, " in the middle");
   else if (event->kind == VS_EVENT_FREE_BALL)
     add(&t, " in quadrant %d", event->quadrant);
 }

@@ -10,6 +10,7 @@ typedef struct restart {
   vs_event_kind kind; // KICK_OFF, PENALTY, FREE_BALL or GOAL_KICK; NONE: open play
   vs_team kicker;
   double ball_x_m, ball_y_m;
+  bool in_the_middle; // a free ball again: robots stand in their own half, outside the circle
 } restart;
 
 // False where the event places nothing.
@@ -24,6 +25,8 @@ static bool restart_of(const vs_event *event, restart *r) {
   case VS_EVENT_PENALTY: r->ball_x_m = VS_PENALTY_MARK_X_M; return true;
   case VS_EVENT_FREE_BALL:
     r->kicker = VS_BLUE; // nobody's: the absolute frame
+    r->in_the_middle = quadrant == 0;
+    if (r->in_the_middle) return true;
     r->ball_x_m = x_side * VS_FREE_BALL_MARK_X_M;
     r->ball_y_m = y_side * VS_FREE_BALL_MARK_Y_M;
     return true;
@@ -52,7 +55,21 @@ static const vs_pose goal_kick_pose[VS_TEAMS][VS_TEAM_SIZE] = {
     {{0.675, 0, VS_PI}, {-0.225, 0.1, VS_PI}, {-0.15, -0.32, VS_PI}},
 };
 
+// Both teams as far from the ball as each other.
+static void middle_poses(vs_pose pose[VS_TEAMS][VS_TEAM_SIZE]) {
+  for (int t = 0; t < VS_TEAMS; t++) {
+    double own = t == 0 ? -1 : 1, theta_rad = t == 0 ? 0 : VS_PI;
+    pose[t][0] = (vs_pose){own * 0.675, 0, theta_rad};
+    pose[t][1] = (vs_pose){own * 0.28, 0, theta_rad};
+    pose[t][2] = (vs_pose){own * 0.4, own * 0.2, theta_rad};
+  }
+}
+
 static void free_ball_poses(const restart *r, vs_pose pose[VS_TEAMS][VS_TEAM_SIZE]) {
+  if (r->in_the_middle) {
+    middle_poses(pose);
+    return;
+  }
   double x_side = r->ball_x_m > 0 ? 1 : -1, y_side = r->ball_y_m > 0 ? 1 : -1;
   for (int t = 0; t < VS_TEAMS; t++) {
     double own = t == 0 ? -1 : 1, theta_rad = t == 0 ? 0 : VS_PI; // which side is its own
@@ -92,7 +109,8 @@ static bool rules_allow(const restart *r, int t, double x_m, double y_m, double 
   case VS_EVENT_NONE: return true;
   case VS_EVENT_PENALTY: // behind the half line, as seen from the ball
     return x_m <= -clear_m;
-  case VS_EVENT_FREE_BALL: // out of the ball's quadrant
+  case VS_EVENT_FREE_BALL: // out of the ball's quadrant; again: as at a kick-off, but for both teams outside the circle
+    if (r->in_the_middle) return (t == 0 ? -1 : 1) * x_m >= clear_m && hypot(x_m, y_m) >= VS_CIRCLE_RADIUS_M + clear_m;
     return x_side * x_m <= -clear_m || y_side * y_m <= -clear_m;
   case VS_EVENT_GOAL_KICK: // out of the kicker's area
     return x_m >= area_x_m + clear_m || fabs(y_m) >= VS_AREA_HALF_WIDTH_M + clear_m;
@@ -104,7 +122,9 @@ static bool rules_allow(const restart *r, int t, double x_m, double y_m, double 
 
 // The robot that has a task: it kicks, keeps the goal or stands beside a free ball. False: team t has none.
 static bool draw_task(const restart *r, int t, vs_rng *rng, vs_pose *pose) {
-  if (r->kind == VS_EVENT_FREE_BALL) {
+  if (r->in_the_middle) {
+    return false;
+  } else if (r->kind == VS_EVENT_FREE_BALL) {
     *pose = (vs_pose){r->ball_x_m + (t == 0 ? -1 : 1) * VS_FREE_BALL_ROBOT_M, r->ball_y_m, 0};
   } else if (r->kind == VS_EVENT_PENALTY && t == 0) { // behind the ball, 10 to 30 cm away
     double angle = vs_rng_range(rng, -VS_PI / 3, VS_PI / 3), distance = vs_rng_range(rng, 0.1, 0.3);
@@ -227,6 +247,7 @@ void vs_place(vs_placement_mode mode, const vs_event *event, const vs_world *bef
 
 // The robot that the restart is about stands where it must. False where none of team t has to.
 static bool has_task(const restart *r, int t, const vs_pose *p) {
+  if (r->in_the_middle) return false;
   switch (r->kind) {
   case VS_EVENT_FREE_BALL:
     return vs_distance_m(p->x_m, p->y_m, r->ball_x_m + (t == 0 ? -1 : 1) * VS_FREE_BALL_ROBOT_M, r->ball_y_m) <= NEAR_M;
@@ -240,6 +261,7 @@ static bool has_task(const restart *r, int t, const vs_pose *p) {
 }
 
 static bool task_is_due(const restart *r, int t) {
+  if (r->in_the_middle) return false;
   return r->kind == VS_EVENT_FREE_BALL || r->kind == VS_EVENT_PENALTY || t == 0;
 }
 

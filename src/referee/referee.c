@@ -16,7 +16,7 @@ vs_referee_def vs_referee_def_default(vs_rules rules) {
                         .kick_off = VS_BLUE,
                         .still_s = VS_STILL_S,
                         .still_distance_m = VS_STILL_DISTANCE_M};
-  if (rules == VS_RULES_LEAGUE) {
+  if (rules != VS_RULES_PAPER) {
     def.duration_s = 600;
     def.halves = 2;
   }
@@ -80,7 +80,7 @@ bool vs_referee_ok(const vs_referee *r, const vs_referee_def *def) {
               vs_all_finite(&d->still_s, 1) && d->still_s > 0; // an episode draws these two
   return same && game_ok(&r->game) && vs_are_bools(&r->over, 1) && is_team(r->kick_off) && r->half >= 0 &&
          r->half <= 1 && vs_all_finite(&r->still_x_m, 3) && r->play_area >= -1 && r->play_area < VS_TEAMS &&
-         vs_all_finite(&r->defence_s, 4);
+         vs_all_finite(&r->defence_s, 4) && r->free_balls >= 0;
 }
 
 void vs_referee_restarted(vs_referee *referee, const vs_world *world) {
@@ -156,6 +156,7 @@ static bool ends_the_match(const vs_referee *r, double dt_s) {
 
 static void announce(vs_referee *r, const vs_event *event, double dt_s) {
   r->game.last_event = *event;
+  r->free_balls = event->kind == VS_EVENT_FREE_BALL ? r->free_balls + 1 : 0;
   if (event->kind == VS_EVENT_GOAL) {
     r->game.score[event->team]++;
     r->kick_off = vs_other_team(event->team);
@@ -177,12 +178,13 @@ vs_event vs_referee_step(vs_referee *referee, const vs_world *world, double dt_s
 
   vs_facts facts;
   facts_of(world, dt_s, &facts);
-  bool league = referee->def.rules == VS_RULES_LEAGUE;
-  if (league)
-    vs_league_clocks(referee, &facts);
-  else
-    vs_paper_clocks(referee, world, &facts);
-  for (const vs_rule *rule = league ? vs_league_rules : vs_paper_rules; rule->name; rule++) {
+  static const vs_rule *const tables[] = {vs_paper_rules, vs_league_rules, vs_serie_a_2023_rules, vs_larc_2026_rules};
+  switch (referee->def.rules) {
+  case VS_RULES_PAPER: vs_paper_clocks(referee, world, &facts); break;
+  case VS_RULES_LEAGUE: vs_league_clocks(referee, &facts); break;
+  default: vs_serie_a_clocks(referee, world, &facts);
+  }
+  for (const vs_rule *rule = tables[referee->def.rules]; rule->name; rule++) {
     if (!rule->applies(referee, &facts, &event)) continue;
     announce(referee, &event, dt_s);
     break;
@@ -190,12 +192,15 @@ vs_event vs_referee_step(vs_referee *referee, const vs_world *world, double dt_s
   return event;
 }
 
+static const char *const rules_names[] = {"paper", "league", "serie-a-2023", "larc-2026"};
+
 vs_status vs_rules_parse(const char *name, vs_rules *out, vs_error *err) {
-  bool league = strcmp(name, "league") == 0;
-  if (!league && strcmp(name, "paper") != 0)
-    return vs_fail(err, VS_USAGE, "rules '%.80s': known are paper and league", name);
-  *out = league ? VS_RULES_LEAGUE : VS_RULES_PAPER;
-  return VS_OK;
+  for (int k = VS_RULES_PAPER; k <= VS_RULES_LARC_2026; k++) {
+    if (strcmp(name, rules_names[k]) != 0) continue;
+    *out = (vs_rules)k;
+    return VS_OK;
+  }
+  return vs_fail(err, VS_USAGE, "rules '%.80s': known are paper, league, serie-a-2023 and larc-2026", name);
 }
 
 vs_status vs_placement_parse(const char *name, vs_placement_mode *out, vs_error *err) {

@@ -14,7 +14,7 @@ typedef struct vs_facts {
   int defenders, attackers; // of and against that team, in that area
   double ball_mps;
   bool near_ball[VS_TEAMS];
-  int ended_play; // league: the team whose area the ball has just left (into the goal or out of it); -1: none
+  int ended_play; // not paper: the team whose area the ball has just left (into the goal or out of it); -1: none
 } vs_facts;
 
 // One rule. Fills kind, team and quadrant of event where it applies. The first row that applies decides; the table ends
@@ -24,11 +24,12 @@ typedef struct vs_rule {
   bool (*applies)(const vs_referee *referee, const vs_facts *facts, vs_event *event);
 } vs_rule;
 
-extern const vs_rule vs_paper_rules[], vs_league_rules[];
+extern const vs_rule vs_paper_rules[], vs_league_rules[], vs_serie_a_2023_rules[], vs_larc_2026_rules[];
 
 // The clocks of one set of rules, kept before its rules are asked.
 void vs_paper_clocks(vs_referee *referee, const vs_world *world, const vs_facts *facts);
 void vs_league_clocks(vs_referee *referee, vs_facts *facts);
+void vs_serie_a_clocks(vs_referee *referee, const vs_world *world, vs_facts *facts);
 
 // Rows both tables have.
 bool vs_rule_time(const vs_referee *referee, const vs_facts *facts, vs_event *event);

@@ -29,9 +29,10 @@ static void caption(const vs_game *game, char *text, size_t size) {
   double age_s = game->time_s - e->time_s;
   if (e->kind != VS_EVENT_END && !(age_s >= 0.0 && age_s < CAPTION_S)) return;
   const char *name = vs_event_name(e->kind);
-  if (e->kind == VS_EVENT_FREE_BALL)
+  if (e->kind == VS_EVENT_FREE_BALL && e->quadrant > 0)
     snprintf(text, size, "%s - quadrant %d", name, e->quadrant);
-  else if (e->kind == VS_EVENT_HALT || e->kind == VS_EVENT_END || e->kind == VS_EVENT_HALF_TIME)
+  else if (e->kind == VS_EVENT_HALT || e->kind == VS_EVENT_END || e->kind == VS_EVENT_HALF_TIME ||
+           e->kind == VS_EVENT_FREE_BALL)
     snprintf(text, size, "%s", name);
   else
     snprintf(text, size, "%s - %s", name, vs_team_name(e->team));

@@ -1,0 +1,54 @@
+#include "vsss/idle.h"
+
+#include <math.h>
+
+#include "referee_internal.h"
+#include "vsss/field.h"
+#include "vsss/geom.h"
+
+static bool in_area(int team, double x_m, double y_m) {
+  double side = team == VS_BLUE ? -1 : 1;
+  return side * x_m > VS_FIELD_HALF_LENGTH_M - VS_AREA_DEPTH_M && fabs(y_m) < VS_AREA_HALF_WIDTH_M;
+}
+
+// The robot in its own area that is nearest to its goal, while the ball is elsewhere; -1: none is excused.
+static int excused(const vs_world *w, int team) {
+  if (in_area(team, w->ball.x_m, w->ball.y_m)) return -1;
+  double goal_x_m = team == VS_BLUE ? -VS_FIELD_HALF_LENGTH_M : VS_FIELD_HALF_LENGTH_M, nearest_m = INFINITY;
+  int keeper = -1;
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    const vs_pose *p = &w->robot[team][i].pose;
+    double d = vs_distance_m(p->x_m, p->y_m, goal_x_m, 0);
+    if (in_area(team, p->x_m, p->y_m) && d < nearest_m) nearest_m = d, keeper = i;
+  }
+  return keeper;
+}
+
+void vs_idle_step(vs_idle *idle, const vs_world *w, const vs_event *event, double dt_s) {
+  bool restart = event->kind != VS_EVENT_NONE, half = event->kind == VS_EVENT_HALF_TIME;
+  for (int t = 0; t < VS_TEAMS; t++) {
+    int keeper = excused(w, t);
+    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+      const vs_pose *p = &w->robot[t][i].pose;
+      double x_m = idle->robot[t][i].x_m, y_m = idle->robot[t][i].y_m;
+      bool moved = vs_distance_m(p->x_m, p->y_m, x_m, y_m) > VS_IDLE_RADIUS_M;
+      if (half) idle->robot[t][i].off = false;
+      if (moved || half) idle->robot[t][i].warned = false;
+      if (moved || restart || i == keeper || idle->robot[t][i].off) {
+        idle->robot[t][i].x_m = p->x_m;
+        idle->robot[t][i].y_m = p->y_m;
+        idle->robot[t][i].stayed_s = 0;
+        continue;
+      }
+      idle->robot[t][i].stayed_s += dt_s;
+      if (!vs_reached(idle->robot[t][i].stayed_s, VS_IDLE_S, dt_s)) continue;
+      idle->warnings[t]++;
+      if (idle->robot[t][i].warned) {
+        idle->sent_off[t]++;
+        idle->robot[t][i].off = true;
+      }
+      idle->robot[t][i].warned = true;
+      idle->robot[t][i].stayed_s = 0;
+    }
+  }
+}
