@@ -4,6 +4,7 @@
 #define VSSS_EVAL_H
 
 #include "vsss/env.h"
+#include "vsss/idle.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -16,6 +17,7 @@ typedef struct vs_match_result {
   double time_s;       // played
   int score[VS_TEAMS];
   int events[VS_TEAMS][VS_EVENT_KINDS]; // by the team the event names: goals scored, penalties and goal kicks taken
+  int idle_warnings[VS_TEAMS], idle_sent_off[VS_TEAMS]; // idle.h, whatever the match's rules
 } vs_match_result;
 
 typedef struct vs_series_def {
@@ -39,6 +41,8 @@ vs_status vs_match_play(vs_env *env, uint64_t seed, bool (*go_on)(void *context)
                         vs_error *err);
 // Adds one event of the match to its counts.
 void vs_match_count(vs_match_result *result, const vs_event *event);
+// The same for all that a frame brought. idle: all zero at the start of the match.
+void vs_match_watch(vs_match_result *result, vs_idle *idle, const vs_env *env, const vs_event *event);
 
 // A mean with the bounds of its 95 % interval: percentiles of the means of VS_BOOTSTRAP_RESAMPLES samples drawn with
 // replacement.
@@ -54,6 +58,7 @@ typedef struct vs_series_summary {
   vs_estimate win, draw, loss, goals_for, goals_against;
   vs_estimate score; // paper (17): (goals for - goals against) / matches
   double penalties_for, penalties_against, free_balls, goal_kicks;
+  double idle_warnings[VS_TEAMS], idle_sent_off[VS_TEAMS];
   double mean_time_s;
 } vs_series_summary;
 vs_status vs_series_sum_up(const vs_match_result *results, int n, vs_series_summary *out, vs_error *err);

@@ -128,6 +128,26 @@ static void print_restarts(const eval_command *c) {
       vs_report_restarts_row(stdout, c->pairings[i].uri[VS_YELLOW], &c->pairings[i].summary);
 }
 
+// Each player that broke the idle rule is told so once, over all its matches.
+static void print_idle(const eval_command *c) {
+  for (int k = -1; k < c->players; k++) {
+    const char *uri = k < 0 ? c->blue : c->player[k];
+    double warnings = 0, sent_off = 0;
+    int matches = 0;
+    if (k < 0 && c->round_robin) continue;
+    for (int i = 0; i < c->count; i++)
+      for (int t = 0; t < VS_TEAMS; t++) {
+        const pairing *p = &c->pairings[i];
+        if (strcmp(p->uri[t], uri) != 0 || p->summary.matches == 0) continue;
+        warnings += p->summary.idle_warnings[t] * p->summary.matches;
+        sent_off += p->summary.idle_sent_off[t] * p->summary.matches;
+        matches += p->summary.matches;
+      }
+    bool told = k >= 0 && !c->round_robin && !strcmp(uri, c->blue);
+    if (matches > 0 && !told) vs_report_idle(stdout, uri, warnings / matches, sent_off / matches);
+  }
+}
+
 // Elo of the players from all matches played. rating: MAX_PLAYERS doubles.
 static void rate(const eval_command *c, double *rating) {
   double points[MAX_PLAYERS * MAX_PLAYERS] = {0};
@@ -252,6 +272,8 @@ static vs_status evaluate(eval_command *c, const vs_env_def *env, FILE *json, FI
   vs_progress_clear(&c->progress);
 
   c->round_robin ? print_cross_table(c) : print_restarts(c);
+  printf("\n");
+  print_idle(c);
   if (c->done < c->count * c->matches) printf("\nstopped: %d of %d matches\n", c->done, c->count * c->matches);
   double played_s = 0.0, wall_s = (double)(vs_clock_monotonic_us() - start_us) * 1e-6;
   for (int i = 0; i < c->count; i++) played_s += c->pairings[i].summary.mean_time_s * c->pairings[i].summary.matches;

@@ -121,11 +121,12 @@ static vs_status play_watched(sim_command *c, vs_env *env, int match, vs_error *
   r->seed = vs_seed_mix(c->match.seed, (uint64_t)match);
   vs_status s = vs_env_reset(env, r->seed, err);
   vs_event event = {.kind = VS_EVENT_KICK_OFF, .team = VS_BLUE};
+  vs_idle idle = {0};
   if (s == VS_OK) s = tell_watchers(c, env, match, &event, err);
   while (s == VS_OK && !vs_env_over(env) && !vs_cli_interrupted()) {
     s = vs_env_frame(env, &event, err);
     if (s != VS_OK) break;
-    vs_match_count(r, &event);
+    vs_match_watch(r, &idle, env, &event);
     s = tell_watchers(c, env, match, &event, err);
   }
   keep_result(env, r);
@@ -192,6 +193,7 @@ static void print_match(const sim_command *c, double wall_s) {
            r->events[VS_YELLOW][VS_EVENT_GOAL_KICK]);
   printf("%-12s %10d\n", "free balls",
          r->events[VS_BLUE][VS_EVENT_FREE_BALL] + r->events[VS_YELLOW][VS_EVENT_FREE_BALL]);
+  for (int t = 0; t < VS_TEAMS; t++) vs_report_idle(stdout, c->uri[t], r->idle_warnings[t], r->idle_sent_off[t]);
   printf("\n%s%.1f s played in %.2f s (%.0f times real time), hash %016" PRIx64 "\n",
          r->played ? "" : "stopped: ", r->time_s, wall_s, r->time_s / wall_s, r->hash);
 }
@@ -202,6 +204,8 @@ static void print_series(const sim_command *c, const vs_series_summary *summary,
   printf("\n");
   vs_report_restarts_head(stdout);
   vs_report_restarts_row(stdout, c->uri[VS_YELLOW], summary);
+  for (int t = 0; t < VS_TEAMS; t++)
+    vs_report_idle(stdout, c->uri[t], summary->idle_warnings[t], summary->idle_sent_off[t]);
   double played_s = summary->mean_time_s * summary->matches;
   if (summary->matches < c->matches) printf("\nstopped: %d of %d matches\n", summary->matches, c->matches);
   printf("\n%.0f s played in %.1f s (%.0f times real time)\n", played_s, wall_s, played_s / wall_s);

@@ -31,13 +31,24 @@ void vs_report_table_row(FILE *out, const char *against, const vs_series_summary
 }
 
 void vs_report_restarts_head(FILE *out) {
-  fprintf(out, "%-14s %13s %17s %10s %10s %9s\n", "a match", "penalties for", "penalties against", "free balls",
-          "goal kicks", "seconds");
+  fprintf(out, "%-14s %13s %17s %10s %10s %9s %14s\n", "a match", "penalties for", "penalties against", "free balls",
+          "goal kicks", "seconds", "idle, sent off");
 }
 
 void vs_report_restarts_row(FILE *out, const char *against, const vs_series_summary *s) {
-  fprintf(out, "%-14s %13.2f %17.2f %10.2f %10.2f %9.1f\n", against, s->penalties_for, s->penalties_against,
-          s->free_balls, s->goal_kicks, s->mean_time_s);
+  char idle[64];
+  snprintf(idle, sizeof idle, "%.1f:%.1f  %.1f:%.1f", s->idle_warnings[VS_BLUE], s->idle_warnings[VS_YELLOW],
+           s->idle_sent_off[VS_BLUE], s->idle_sent_off[VS_YELLOW]);
+  fprintf(out, "%-14s %13.2f %17.2f %10.2f %10.2f %9.1f %14s\n", against, s->penalties_for, s->penalties_against,
+          s->free_balls, s->goal_kicks, s->mean_time_s, idle);
+}
+
+void vs_report_idle(FILE *out, const char *player, double warnings, double sent_off) {
+  if (!(warnings > 0)) return;
+  fprintf(out, "%s breaks the idle rule: a robot stands or spins on the spot for %g s %.1f times a match", player,
+          VS_IDLE_S, warnings);
+  if (sent_off > 0) fprintf(out, ", and %.1f are sent off", sent_off);
+  fprintf(out, "\n");
 }
 
 typedef struct column {
@@ -62,7 +73,8 @@ void vs_report_csv_head(FILE *out) {
   columns_of(&none, c);
   fprintf(out, "blue,yellow,matches");
   for (int i = 0; i < COLUMNS; i++) fprintf(out, ",%s,%s_low,%s_high", c[i].name, c[i].name, c[i].name);
-  fprintf(out, ",penalties_for,penalties_against,free_balls,goal_kicks,mean_time_s\n");
+  fprintf(out, ",penalties_for,penalties_against,free_balls,goal_kicks,mean_time_s,idle_warnings,idle_warnings_against,"
+               "idle_sent_off,idle_sent_off_against\n");
 }
 
 // A field of a CSV file: quoted where it holds a comma or a quote.
@@ -84,8 +96,10 @@ void vs_report_csv_row(FILE *out, const char *blue, const char *yellow, const vs
   column c[COLUMNS];
   columns_of(s, c);
   for (int i = 0; i < COLUMNS; i++) fprintf(out, ",%.6g,%.6g,%.6g", c[i].value.mean, c[i].value.low, c[i].value.high);
-  fprintf(out, ",%.6g,%.6g,%.6g,%.6g,%.6g\n", s->penalties_for, s->penalties_against, s->free_balls, s->goal_kicks,
+  fprintf(out, ",%.6g,%.6g,%.6g,%.6g,%.6g", s->penalties_for, s->penalties_against, s->free_balls, s->goal_kicks,
           s->mean_time_s);
+  fprintf(out, ",%.6g,%.6g,%.6g,%.6g\n", s->idle_warnings[VS_BLUE], s->idle_warnings[VS_YELLOW],
+          s->idle_sent_off[VS_BLUE], s->idle_sent_off[VS_YELLOW]);
 }
 
 static void json_number(FILE *out, const char *name, double value) {
@@ -112,10 +126,12 @@ void vs_report_json_match(FILE *out, const vs_match_result *m) {
   json_number(out, "time_s", m->time_s);
   fprintf(out, ", \"finished\": %s, \"score\": [%d, %d]", m->played ? "true" : "false", m->score[VS_BLUE],
           m->score[VS_YELLOW]);
-  fprintf(out, ", \"penalties\": [%d, %d], \"free_balls\": %d, \"goal_kicks\": [%d, %d]}",
+  fprintf(out, ", \"penalties\": [%d, %d], \"free_balls\": %d, \"goal_kicks\": [%d, %d]",
           m->events[VS_BLUE][VS_EVENT_PENALTY], m->events[VS_YELLOW][VS_EVENT_PENALTY],
           m->events[VS_BLUE][VS_EVENT_FREE_BALL] + m->events[VS_YELLOW][VS_EVENT_FREE_BALL],
           m->events[VS_BLUE][VS_EVENT_GOAL_KICK], m->events[VS_YELLOW][VS_EVENT_GOAL_KICK]);
+  fprintf(out, ", \"idle_warnings\": [%d, %d], \"idle_sent_off\": [%d, %d]}", m->idle_warnings[VS_BLUE],
+          m->idle_warnings[VS_YELLOW], m->idle_sent_off[VS_BLUE], m->idle_sent_off[VS_YELLOW]);
 }
 
 void vs_report_json_matches(FILE *out, const vs_match_result *results, int n) {

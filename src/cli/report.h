@@ -11,6 +11,8 @@ void vs_report_table_head(FILE *out);
 void vs_report_table_row(FILE *out, const char *against, const vs_series_summary *summary);
 void vs_report_restarts_head(FILE *out);
 void vs_report_restarts_row(FILE *out, const char *against, const vs_series_summary *summary);
+// A line where a player broke the idle rule, per match; nothing where it did not.
+void vs_report_idle(FILE *out, const char *player, double warnings, double sent_off);
 
 void vs_report_csv_head(FILE *out);
 void vs_report_csv_row(FILE *out, const char *blue, const char *yellow, const vs_series_summary *summary);

@@ -9,17 +9,27 @@
 
 void vs_match_count(vs_match_result *result, const vs_event *event) { result->events[event->team][event->kind]++; }
 
+void vs_match_watch(vs_match_result *result, vs_idle *idle, const vs_env *env, const vs_event *event) {
+  vs_world judged;
+  vs_match_count(result, event);
+  vs_env_judged(env, &judged);
+  vs_idle_step(idle, &judged, event, 1.0 / VS_CAMERA_HZ);
+  memcpy(result->idle_warnings, idle->warnings, sizeof result->idle_warnings);
+  memcpy(result->idle_sent_off, idle->sent_off, sizeof result->idle_sent_off);
+}
+
 vs_status vs_match_play(vs_env *env, uint64_t seed, bool (*go_on)(void *context), void *context, vs_match_result *out,
                         vs_error *err) {
   memset(out, 0, sizeof *out);
   out->seed = seed;
+  vs_idle idle = {0};
   vs_status s = vs_env_reset(env, seed, err);
   if (s != VS_OK) return s;
   for (int frame = 1; !vs_env_over(env); frame++) {
     vs_event event;
     s = vs_env_frame(env, &event, err);
     if (s != VS_OK) return s;
-    vs_match_count(out, &event);
+    vs_match_watch(out, &idle, env, &event);
     if (go_on && frame % VS_CAMERA_HZ == 0 && !go_on(context)) return VS_OK;
   }
   const vs_game *game = vs_env_game(env);

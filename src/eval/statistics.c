@@ -65,7 +65,13 @@ static void sum_up_played(const vs_match_result *const *played, int n, double *s
       mean_events(played, n, VS_BLUE, VS_EVENT_FREE_BALL) + mean_events(played, n, VS_YELLOW, VS_EVENT_FREE_BALL);
   out->goal_kicks =
       mean_events(played, n, VS_BLUE, VS_EVENT_GOAL_KICK) + mean_events(played, n, VS_YELLOW, VS_EVENT_GOAL_KICK);
-  for (int i = 0; i < n; i++) out->mean_time_s += played[i]->time_s / n;
+  for (int i = 0; i < n; i++) {
+    out->mean_time_s += played[i]->time_s / n;
+    for (int t = 0; t < VS_TEAMS; t++) {
+      out->idle_warnings[t] += (double)played[i]->idle_warnings[t] / n;
+      out->idle_sent_off[t] += (double)played[i]->idle_sent_off[t] / n;
+    }
+  }
 }
 
 vs_status vs_series_sum_up(const vs_match_result *results, int n, vs_series_summary *out, vs_error *err) {
