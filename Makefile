@@ -43,7 +43,7 @@ BENCH_BIN := $(patsubst %.c,$(B)/%,$(wildcard tests/bench/bench_*.c))
 TEST_BIN := $(TEST_SRC:%.c=$(B)/%)
 VSSS := $(if $(filter plain,$(FLAVOUR)),vsss,$(B)/vsss)
 
-.PHONY: all test asan tsan lint bench bench-peers clean library install uninstall help features tests
+.PHONY: wheel all test asan tsan lint bench bench-peers clean library install uninstall help features tests
 all: features $(VSSS) $(MODULES) $(EXTRA_ALL)
 
 
@@ -54,6 +54,7 @@ help:
 	@echo "make lint      layers, formatting, banned functions, static analysis"
 	@echo "make bench     the figures: 'bench NAME VALUE UNIT', medians"
 	@echo "make bench-peers  beside the benchmarks of peer projects; INSTALL=1 installs those"
+	@echo "make wheel     the Python package, build/dist/*.whl"
 	@echo "make install   into PREFIX ($(PREFIX)), libraries into LIBDIR ($(LIBDIR)); make uninstall"
 	@echo "make library   build/plain/libvsss.so, the C library for other programs; make clean"
 
@@ -126,6 +127,10 @@ bench: all $(BENCH_BIN)
 # Peer projects' benchmarks beside ours, where they are installed (INSTALL=1 installs them).
 bench-peers: all $(BENCH_BIN)
 	@sh tests/bench/peers.sh $(B) $(if $(INSTALL),--install)
+
+# The Python package for every Python, build/dist/*.whl.
+wheel:
+	@sh deploy/python/wheel.sh
 
 clean:
 	rm -rf build vsss

@@ -39,7 +39,7 @@ VSSS_API int vs_capi_hello(uint32_t version, uint32_t size, vs_capi_about *about
 
 // Name number index of a list, NULL past its end. Lists: "reward" and "event" (by their numbers), "observation" (the values
 // of one frame), "setting" and "setting_help" (of vs_capi_vec_new), "vss_setting" and "vss_setting_help", "shaping" (of
-// vs_capi_vss), "summary", "player" (schemes of URIs).
+// vs_capi_vss), "summary", "player" (schemes of URIs), "release" (one).
 VSSS_API const char *vs_capi_name(const char *list, int index);
 
 // The path of a file of ours, such as "models/policy/vsss.onnx" (paths.h).

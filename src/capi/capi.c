@@ -65,6 +65,7 @@ const char *vs_capi_name(const char *list, int index) {
   if (!strcmp(list, "shaping")) return vs_capi_shaping(index);
   if (!strcmp(list, "summary")) return vs_capi_summary(index);
   if (!strcmp(list, "player")) return player_scheme(index);
+  if (!strcmp(list, "release")) return index == 0 ? VSSS_RELEASE : NULL;
   return NULL;
 }
 

@@ -16,11 +16,8 @@ skip() {
 [ "$python" ] || skip "no python3 with pip (apt install python3-pip)"
 version=$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
 site=build/python/site-$version
-case $version in
-3.9) wanted="numpy==2.0.2 gymnasium==1.1.1 pettingzoo==1.25.0 onnxruntime==1.19.2" ;;
-3.1[0-3]) wanted="numpy==2.2.6 gymnasium==1.2.0 pettingzoo==1.25.0 onnxruntime==1.22.1" ;;
-*) skip "Python $version is not one of 3.9 to 3.13" ;;
-esac
+wanted=$(sh tests/python/pins.sh "$version")
+[ "$wanted" ] || skip "Python $version is not one of 3.9 to 3.13"
 if [ "$(cat "$site/.made" 2>/dev/null)" != "$wanted" ]; then
   rm -rf "$site"
   mkdir -p "$site"
