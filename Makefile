@@ -121,11 +121,11 @@ lint:
 	@sh tests/lint.sh
 
 # N=what runs one of tests/bench/bench_what.c.
-bench: all $(BENCH_BIN)
+bench: all $(BENCH_BIN) $(B)/libvsss.so
 	@sh tests/bench/run.sh $(B) $(N)
 
 # Peer projects' benchmarks beside ours, where they are installed (INSTALL=1 installs them).
-bench-peers: all $(BENCH_BIN)
+bench-peers: all $(BENCH_BIN) $(B)/libvsss.so
 	@sh tests/bench/peers.sh $(B) $(if $(INSTALL),--install)
 
 # The Python package for every Python, build/dist/*.whl.

@@ -69,6 +69,8 @@ fi
 if [ "$dev" ]; then
   packages="$packages
 clang-format cppcheck shellcheck  make lint
+python3-pip python3-venv  make wheel, tests of the Python package
+python3-torch       its examples that learn
 iproute2            network namespaces, for the test of training on two hosts"
 fi
 

@@ -44,7 +44,7 @@ cp models/*.xml $stage/vsss/share/vsss/models
 cp models/policy/vsss.onnx models/policy/vsss.txt $stage/vsss/share/vsss/models/policy
 cp -r deploy/config $stage/vsss/share/vsss/deploy
 if [ "${VSSS_PROJECT_URL:-}" ]; then
-  sed "s|(match.png)|($VSSS_PROJECT_URL/raw/main/deploy/docs/match.png)|" deploy/python/README.md >$stage/README.md
+  sed "s|(../docs/match.png)|($VSSS_PROJECT_URL/raw/main/deploy/docs/match.png)|" deploy/python/README.md >$stage/README.md
 else
   cp deploy/python/README.md $stage/README.md
 fi

@@ -37,7 +37,7 @@ if [ "${2:-}" = --install ]; then
   install_peer rsim 3.10 rc-robosim==1.2 "numpy<2"
   install_peer psim 3.11 "pSim[all]==0.2.4"
   install_peer rsoccer 3.10 rc-robosim==1.2 rsoccer-gym==1.4 gym==0.21.0 "numpy<1.24" "protobuf<3.21" "pyglet<2"
-  install_peer sb3 3.10 torch "numpy<2" stable-baselines3 rc-robosim==1.2 rsoccer-gym==1.4 gym==0.21.0 "protobuf<3.21" "pyglet<2"
+  install_peer sb3 3.10 torch "numpy<2" stable-baselines3 pettingzoo rc-robosim==1.2 rsoccer-gym==1.4 gym==0.21.0 "protobuf<3.21" "pyglet<2"
   install_peer envpool 3.12 envpool==1.2.7 torch
   exit
 fi
@@ -89,4 +89,22 @@ torch=$(run sb3 bench_torch_ppo_learner.py transitions_per_s_at_epochs)
 compare learner_fp32/torch_learner "$learner_fp32" "$torch" "transitions/s per core"
 compare learner/torch_learner "$learner" "$torch" "transitions/s per core; bf16 where the processor has it"
 compare train/envpool_soccer_torch_ppo "$whole" "$(run envpool bench_envpool_soccer_ppo.py transitions_per_s --seconds 30)" "transitions/s per core"
-compare train/sb3_rsoccer "$whole" "$(run sb3 bench_sb3_rsoccer.py transitions_per_s --seconds 30)" "transitions/s per core"
+# The Python package on the same core: environments one beside one, and PPO of the same library on both.
+ours_python() { # NAME of the environment of a peer, what...
+  name=$1
+  shift
+  [ -x "$pythons/$name/bin/python" ] || return 0
+  PYTHONPATH=$PWD/deploy/python VSSS_LIBRARY=$PWD/$folder/libvsss.so taskset -c 1 "$pythons/$name/bin/python" \
+    tests/bench/bench_python.py "$@" 2>"$scratch/log" || echo "peers: bench_python failed: $(tail -n 1 "$scratch/log")" >&2
+}
+ours="$ours
+$(ours_python sb3 envs sb3)"
+compare python_vss_v0/rsoccer_vss_v0 "$(our python_vss_v0_steps)" "$(run rsoccer bench_rsoccer_gym.py steps_per_s --api gym --seconds 8)" "steps of 25 ms/s"
+psim_rate=$(run psim bench_psim.py steps_per_s --env zoo --seconds 8)
+compare python_parallel_env/psim_environment "$(our python_parallel_env_steps)" "$(echo "$psim_rate" | awk '{print $1 * 6}')" "robots' transitions/s, theirs 1/60 s, ours 1/10 s"
+compare python_vec_64_both/envpool_soccer "$(our python_vec_64_both_steps)" "$(run envpool bench_envpool_soccer.py player_transitions_per_s)" "players' transitions/s, theirs 25 ms, ours 100 ms"
+sb3_rsoccer=$(run sb3 bench_sb3_rsoccer.py transitions_per_s --seconds 30)
+for how in vss_v0_as_peers vss_v0_large_batch matches_large_batch; do
+  compare "python_sb3_$how/sb3_rsoccer" "$(our "python_sb3_$how")" "$sb3_rsoccer" "transitions/s; our learner takes $(our "python_sb3_${how}_learner") % of the time"
+done
+compare train/sb3_rsoccer "$whole" "$sb3_rsoccer" "transitions/s per core"

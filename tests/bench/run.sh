@@ -12,5 +12,9 @@ for bench in "$folder"/tests/bench/bench_*; do
   ran=$((ran + 1))
   "$bench" || { echo "bench $name failed" >&2; bad=1; }
 done
+if [ -z "$only" ] || [ "$only" = python ]; then
+  ran=$((ran + 1))
+  sh tests/bench/python.sh "$folder" || bad=1
+fi
 [ "$ran" != 0 ] || { echo "no benchmark named '$only'" >&2; exit 2; }
 exit $bad
