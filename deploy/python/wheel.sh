@@ -1,6 +1,6 @@
 #!/bin/sh
 # Builds the wheel of deploy/python into build/dist: sh deploy/python/wheel.sh (or make wheel).
-# libvsss is built without LCM and AprilTag, which no environment uses; the libraries it needs beyond glibc and libstdc++
+# libvsss is built without LCM, AprilTag and protobuf-c, which no environment uses; the libraries it needs beyond glibc and libstdc++
 # (MuJoCo and MuJoCo's own) go into the wheel by auditwheel, with their licences as Debian tells them. Sizes and licences
 # are listed at the end and in the wheel. Tools come from pip at fixed versions, into build/python/tools.
 # VSSS_PROJECT_URL: the README's picture then has an address, as an index needs it.
@@ -30,7 +30,7 @@ PYTHONPATH=$PWD/$tools
 PATH=$PWD/$tools/bin:$PATH
 export PYTHONPATH PATH
 
-make --no-print-directory FLAVOUR=wheel HAVE_LCM= HAVE_APRILTAG= CFLAGS=-g0 build/wheel/libvsss.so
+make --no-print-directory FLAVOUR=wheel HAVE_LCM= HAVE_APRILTAG= HAVE_PROTOBUFC= CFLAGS=-g0 build/wheel/libvsss.so
 
 stage=build/python/stage
 rm -rf $stage build/dist

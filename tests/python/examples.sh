@@ -29,14 +29,16 @@ site=build/python/examples-$version
 if [ "$(cat "$site/.made" 2>/dev/null)" != "$wanted $learning" ]; then
   rm -rf "$site"
   mkdir -p "$site"
+  pip_into_site() { "$python" -m pip install -q --disable-pip-version-check --no-warn-conflicts --target "$site" "$@" >>"$site.log" 2>&1; }
+  : >"$site.log"
+  fetched=yes
   # shellcheck disable=SC2086 # a list of words
-  "$python" -m pip install -q --disable-pip-version-check --no-warn-conflicts --target "$site" $wanted >"$site.log" 2>&1 &&
-    { [ ! "$learning" ] ||
-      "$python" -m pip install -q --disable-pip-version-check --no-deps --target "$site" "$learning" >>"$site.log" 2>&1; } ||
-    {
-      echo "skipped python examples: pip could not fetch $wanted $learning: $(grep -i error "$site.log" | head -n 1)"
-      exit 0
-    }
+  pip_into_site $wanted || fetched=
+  if [ "$fetched" ] && [ "$learning" ]; then pip_into_site --no-deps "$learning" || fetched=; fi
+  if [ ! "$fetched" ]; then
+    echo "skipped python examples: pip could not fetch $wanted $learning: $(grep -i error "$site.log" | head -n 1)"
+    exit 0
+  fi
   echo "$wanted $learning" >"$site/.made"
 fi
 export PYTHONPATH="$PWD/$site:$PWD/deploy/python" PYTHONFAULTHANDLER=1 PYTHONDONTWRITEBYTECODE=1

@@ -20,7 +20,8 @@ python_of() { # version: a command that works, or one that a version manager kee
 }
 bad=0
 tried=0
-for version in ${*:-3.9 3.10 3.11 3.12 3.13}; do
+[ $# != 0 ] || set -- 3.9 3.10 3.11 3.12 3.13
+for version; do
   python=$(python_of "$version")
   [ "$python" ] || continue
   tried=$((tried + 1))
@@ -30,10 +31,10 @@ for version in ${*:-3.9 3.10 3.11 3.12 3.13}; do
   rm -rf "$venv"
   wanted=$(sh tests/python/pins.sh "$version")
   # shellcheck disable=SC2086 # a list of words
-  "$python" -m venv "$venv" && "$venv/bin/python" -m pip install -q --disable-pip-version-check "$wheel" $wanted >"$log" 2>&1 || {
+  if ! { "$python" -m venv "$venv" && "$venv/bin/python" -m pip install -q --disable-pip-version-check "$wheel" $wanted; } >"$log" 2>&1; then
     echo "skipped wheel on Python $version: $(grep -i error "$log" | head -n 1)"
     continue
-  }
+  fi
   if (
     unset PYTHONPATH VSSS_LIBRARY VSSS_HOME VSSS_ONNXRUNTIME
     root=$PWD
