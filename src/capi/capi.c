@@ -4,13 +4,10 @@
 #include <unistd.h>
 
 #include "capi_internal.h"
-#include "vsss/field.h"
 #include "learn/reward_mix.h"
+#include "vsss/field.h"
 #include "vsss/paths.h"
-
-#ifndef VSSS_RELEASE
-#define VSSS_RELEASE "1.0.0"
-#endif
+#include "vsss/version.h"
 
 int vs_capi_told(vs_status status, const vs_error *err, char *error, size_t error_size) {
   if (error && error_size) snprintf(error, error_size, "%s", status == VS_OK ? "" : err->text);
@@ -44,7 +41,7 @@ int vs_capi_hello(uint32_t version, uint32_t size, vs_capi_about *about, char *e
                            .vss_hz = CAPI_VSS_HZ,
                            .wheel_limit_radps = VS_WHEEL_LIMIT_RADPS};
   snprintf(about->contract, sizeof about->contract, "%s", vs_contract_hash_hex());
-  snprintf(about->release, sizeof about->release, "%s", VSSS_RELEASE);
+  snprintf(about->release, sizeof about->release, "%s", vs_version());
   return vs_capi_told(VS_OK, &err, error, error_size);
 }
 
@@ -65,7 +62,7 @@ const char *vs_capi_name(const char *list, int index) {
   if (!strcmp(list, "shaping")) return vs_capi_shaping(index);
   if (!strcmp(list, "summary")) return vs_capi_summary(index);
   if (!strcmp(list, "player")) return player_scheme(index);
-  if (!strcmp(list, "release")) return index == 0 ? VSSS_RELEASE : NULL;
+  if (!strcmp(list, "release")) return index == 0 ? vs_version() : NULL;
   return NULL;
 }
 
