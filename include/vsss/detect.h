@@ -61,6 +61,7 @@ typedef struct vs_blob {
   double area_px;
   double elongation; // long over short axis of its second moments; 1 for disc and square
   double confidence; // 0..1 from area and shape
+  double angle_rad;  // of the long axis, from right towards down the picture
 } vs_blob;
 
 enum { VS_MAX_TAGS = 16, VS_MAX_BLOBS = 16 };
@@ -78,9 +79,10 @@ typedef struct vs_detector_def {
   vs_mark own, their;      // VS_MARK_APRIL, VS_MARK_PATCH
   vs_team adversary;       // whose colour is looked for
   vs_colour ball, team[2]; // team[VS_BLUE], team[VS_YELLOW]
-  double tag_paper_m;      // VS_TAG_PAPER_M
-  double patch_m;          // VS_PATCH_M
-  double px_per_m;         // of the camera on the field (vs_calib_px_per_m): gates sizes. 0: sizes are not gated
+  vs_hue square[VS_PLATE_COLOURS];
+  double tag_paper_m; // VS_TAG_PAPER_M
+  double patch_m;     // VS_PATCH_M
+  double px_per_m;    // of the camera on the field (vs_calib_px_per_m): gates sizes. 0: sizes are not gated
 } vs_detector_def;
 vs_detector_def vs_detector_def_default(void);
 

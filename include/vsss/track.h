@@ -22,6 +22,7 @@ typedef struct vs_track_def {
   vs_mark own, their; // what the teams wear: as in vs_detector_def
   int tag_id[VS_TEAM_SIZE];             // AprilTag of own robot 0, 1, 2; -1: not on the field
   int aruco_id[VS_TEAMS][VS_TEAM_SIZE]; // ArUco mark of robot 0, 1, 2: vs_aruco_league_id
+  int plate_id[VS_TEAMS][VS_TEAM_SIZE]; // colour plate, by vs_plate_code
   double tag_yaw_rad[VS_TEAM_SIZE];     // from the robot's front to the pattern's top edge, counter-clockwise
   double tag_height_m;                  // VS_ROBOT_HEIGHT_M
   double patch_height_m;                // of the adversaries: VS_ROBOT_HEIGHT_M

@@ -13,7 +13,7 @@ extern "C" {
 
 // Where the [vision] section's words go; the defs point into it, so it must outlive them.
 typedef struct vs_vision_words {
-  char family[32], own_tags[16], their_tags[16];
+  char family[32], own_tags[16], their_tags[16], plate[VS_TEAMS][VS_TEAM_SIZE][32];
 } vs_vision_words;
 // The [vision] section of deploy/config/field.ini: writes up to capacity rows for vs_config_load that set detector and
 // tracker, and returns how many (no closing row).

@@ -7,19 +7,22 @@
 
 #include "cli.h"
 #include "commands.h"
+#include "field_config.h"
 #include "vsss/calib.h"
 #include "vsss/camera.h"
 #include "vsss/clock.h"
+#include "vsss/colours.h"
 #include "vsss/detect.h"
 #include "vsss/field.h"
 #include "vsss/frame_stream.h"
 #include "vsss/image.h"
+#include "vsss/paths.h"
 #include "vsss/tag.h"
 
 enum { MOST_POINTS = 256 };
 
 typedef struct request {
-  const char *camera, *points, *calib, *out, *size, *board, *print_tags, *family, *snapshot;
+  const char *camera, *points, *calib, *out, *size, *board, *print_tags, *family, *snapshot, *colours, *config;
   double height_m, square_mm, paper_mm, tolerance_mm, tag_height_mm;
   int pictures;
   bool check;
@@ -70,9 +73,10 @@ static vs_status print_tags(const request *r, vs_error *err) {
     p = *end ? end + 1 : end;
   }
   if (!r->out) return vs_fail(err, VS_USAGE, "--print-tags needs --out FILE.pdf or .png");
-  double paper_m = r->paper_mm > 0                   ? 1e-3 * r->paper_mm
-                   : strcmp(r->family, VS_TAG_ARUCO) ? VS_TAG_PAPER_M
-                                                     : VS_ARUCO_SIDE_M;
+  double paper_m = r->paper_mm > 0                    ? 1e-3 * r->paper_mm
+                   : !strcmp(r->family, VS_TAG_ARUCO) ? VS_ARUCO_SIDE_M
+                   : !strcmp(r->family, "colour")     ? VS_PLATE_SIDE_M
+                                                      : VS_TAG_PAPER_M;
   vs_status s = vs_tag_sheet(r->out, r->family, ids, count, paper_m, err);
   if (s == VS_OK)
     printf("%s: %d tags of %g mm, on A4. Print at 100 %% and measure the 100 mm bar.\n", r->out, count, 1000 * paper_m);
@@ -92,6 +96,53 @@ static vs_status snapshot(const request *r, vs_error *err) {
       s = vs_image_save(r->snapshot, frame.bgr, frame.bgr_stride, frame.width, frame.height, err);
   }
   if (s == VS_OK) printf("%s: read the pixels of known points off it, (0, 0) is its top left corner\n", r->snapshot);
+  vs_camera_close(camera);
+  return s;
+}
+
+// A picture worth learning from: a device's first ones are of its old exposure.
+static vs_status settled_picture(const char *source, vs_camera **camera, vs_frame *frame, vs_error *err) {
+  vs_status s = open_camera(source, false, camera, err);
+  int wanted = !strncmp(source, "/dev/", 5) ? 10 : 1;
+  for (int i = 0; s == VS_OK && i < wanted; i++) {
+    vs_camera_got got;
+    s = vs_camera_read(*camera, 2000, frame, &got, err);
+    if (s == VS_OK && got != VS_CAMERA_FRAME) s = vs_fail(err, VS_FAIL, "%s: no picture within 2 s", source);
+  }
+  return s;
+}
+
+static void print_colours(const vs_detector_def *d) {
+  const char *const names[] = {"ball", "blue", "yellow"};
+  const vs_colour *const ranges[] = {&d->ball, &d->team[VS_BLUE], &d->team[VS_YELLOW]};
+  for (int i = 0; i < 3; i++)
+    printf("%-7s hue %3.0f to %3.0f, saturation from %.2f, value from %.2f\n", names[i], ranges[i]->hue_min_deg,
+           ranges[i]->hue_max_deg, ranges[i]->saturation_min, ranges[i]->value_min);
+  for (int i = 0; i < VS_PLATE_COLOURS; i++)
+    printf("%-7s hue %3.0f, saturation %.2f\n", vs_plate_colour_name((vs_plate_colour)i), d->square[i].hue_deg,
+           d->square[i].saturation);
+}
+
+static vs_status learn_colours(const request *r, vs_error *err) {
+  static vs_field_config config;
+  static vs_colour_point points[MOST_POINTS];
+  char from[512];
+  int count;
+  vs_camera *camera = NULL;
+  vs_frame frame;
+  if (!r->camera) return vs_fail(err, VS_USAGE, "--colours needs --camera SOURCE (a picture will do)");
+  if (!r->out) return vs_fail(err, VS_USAGE, "--colours needs --out FILE.ini, for `vsss field --config`");
+  vs_status s = vs_colours_load_points(r->colours, points, MOST_POINTS, &count, err);
+  if (s == VS_OK) s = vs_field_config_load(r->config, &config, err);
+  if (s == VS_OK && !r->config) s = vs_path_find("deploy/config/field.ini", from, sizeof from, err);
+  if (s == VS_OK) s = settled_picture(r->camera, &camera, &frame, err);
+  if (s == VS_OK && vs_colours_learn(&frame, points, count, &config.def.detector, err) != VS_OK)
+    s = vs_fail_prefix(err, "%s", r->colours);
+  if (s == VS_OK) print_colours(&config.def.detector);
+  if (s == VS_OK) s = vs_colours_save(r->out, r->config ? r->config : from, &config.def.detector, err);
+  if (s == VS_OK)
+    printf("saved as %s: vsss detect PICTURE --colours --config %s tries it, vsss field --config %s plays with it\n",
+           r->out, r->out, r->out);
   vs_camera_close(camera);
   return s;
 }
@@ -290,13 +341,15 @@ static vs_status check_tags(const request *r, vs_error *err) {
 
 static vs_status act(const request *r, vs_error *err) {
   if (r->print_tags) return print_tags(r, err);
+  if (r->colours) return learn_colours(r, err);
   if (r->board) return checkerboard(r, err);
   if (r->snapshot) return r->camera ? snapshot(r, err) : vs_fail(err, VS_USAGE, "--snapshot needs --camera SOURCE");
   if ((r->check || r->at.count) && !r->calib)
     return vs_fail(err, VS_USAGE, "a check needs --calib FILE, the calibration to be checked");
   if (r->at.count) return check_tags(r, err);
   if (r->points) return r->check ? check_points(r, err) : from_points(r, err);
-  return vs_fail(err, VS_USAGE, "nothing to do: give --points, --checkerboard, --snapshot, --at or --print-tags");
+  return vs_fail(err, VS_USAGE,
+                 "nothing to do: give --points, --checkerboard, --colours, --snapshot, --at or --print-tags");
 }
 
 int cmd_calibrate(int argc, char **argv) {
@@ -321,9 +374,12 @@ int cmd_calibrate(int argc, char **argv) {
       {"checkerboard", VS_FLAG_TEXT, &r.board, "CxR", "measure the lens by a board of CxR inner corners", 0, 0},
       {"square-mm", VS_FLAG_REAL, &r.square_mm, "MM", "side of its squares", 1, 500},
       {"pictures", VS_FLAG_INT, &r.pictures, "N", "pictures of the board or of the tags", 1, 200},
+      {"colours", VS_FLAG_TEXT, &r.colours, "FILE", "learn colours from points, one a line: x_px y_px NAME", 0, 0},
+      {"config", VS_FLAG_TEXT, &r.config, "FILE", "the configuration they go into; default: field.ini", 0, 0},
       {"print-tags", VS_FLAG_TEXT, &r.print_tags, "IDS", "write a sheet of tags such as 0,1,2 to --out", 0, 0},
-      {"family", VS_FLAG_TEXT, &r.family, "NAME", "tag family", 0, 0},
-      {"paper-mm", VS_FLAG_REAL, &r.paper_mm, "MM", "side of a printed tag; 0: 78, of aruco 70", 0, 186},
+      {"family", VS_FLAG_TEXT, &r.family, "NAME", "tag family; aruco: the league's; colour: plates such as 1,12,23,101",
+       0, 0},
+      {"paper-mm", VS_FLAG_REAL, &r.paper_mm, "MM", "side of a printed tag; 0: 78, of aruco 70, of colour 65", 0, 186},
       {NULL, VS_FLAG_SWITCH, NULL, NULL, NULL, 0, 0}};
   bool help;
   vs_error err;
@@ -336,6 +392,8 @@ int cmd_calibrate(int argc, char **argv) {
       "  vsss calibrate --camera /dev/video0 --snapshot field.png\n"
       "  vsss calibrate --points points.txt --calib lens.ini --out deploy/calibration/venue.ini\n"
       "  vsss calibrate --check --calib deploy/calibration/venue.ini --camera /dev/video0 --at 0=0.375,0.4\n"
+      "Colours, from points of a picture (ball, blue, yellow, red, green, pink, cyan):\n"
+      "  vsss calibrate --colours points.txt --camera field.png --out venue-field.ini\n"
       "Tags for the robots' caps: vsss calibrate --print-tags 0,1,2 --out tags.pdf\n"
       "The marks of LARC 2026: vsss calibrate --print-tags 256,272,273,955,771,939 --family aruco --out marks.pdf",
       flags, NULL, &help, &err);

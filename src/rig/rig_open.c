@@ -45,7 +45,9 @@ static vs_status open_render(vs_rig *r, vs_error *err) {
     int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE;
     bool own = team == (int)r->def.team;
     vs_mark mark = own ? r->def.own : r->def.their;
-    int id = mark == VS_MARK_ARUCO ? vs_aruco_league_id[team][index] : r->def.tag_id[index];
+    int id = mark == VS_MARK_ARUCO    ? vs_aruco_league_id[team][index]
+             : mark == VS_MARK_COLOUR ? vs_plate_default_code((vs_team)team, index)
+                                      : r->def.tag_id[index];
     vs_status s = vs_mark_paint(mark, (vs_team)team, id, &cap[team][index], err);
     if (s != VS_OK) return s;
     def.cap[team][index] = (vs_cap){cap[team][index].rgb, cap[team][index].px, cap[team][index].size_m};

@@ -190,7 +190,7 @@ static bool accept(const vs_blob_gate *gate, const moments *m, vs_blob *out) {
   double elongation = a.long_px / a.short_px;
   if (elongation > gate->elongation) return false;
   double size = gate->area_px > 0 ? fmin(m->n, gate->area_px) / fmax(m->n, gate->area_px) : 1.0;
-  *out = (vs_blob){a.x + 0.5, a.y + 0.5, m->n, elongation, size / elongation};
+  *out = (vs_blob){a.x + 0.5, a.y + 0.5, m->n, elongation, size / elongation, a.angle};
   return true;
 }
 

@@ -6,10 +6,11 @@
 #include <string.h>
 
 #include "vision/blobs.h"
+#include "vision/plates.h"
 #include "vsss/field.h"
 #include "vsss/tag.h"
 
-enum { BALL = 1, ADVERSARY = 2 };
+enum { BALL = 1, TEAM = 2 /* shifted by the team */, MOST_BARS = 8 };
 
 // Teams cut their colour from 30 mm upwards, whatever patch_m says, and a camera blurs its rim away.
 #define SMALLEST_PATCH_M 0.03
@@ -41,6 +42,10 @@ vs_detector_def vs_detector_def_default(void) {
                            .adversary = VS_YELLOW,
                            .ball = {2, 40, 0.5, 0.3},
                            .team = {[VS_BLUE] = {195, 260, 0.22, 0.3}, [VS_YELLOW] = {46, 88, 0.35, 0.35}},
+                           .square = {[VS_PLATE_RED] = {350, 0.9},
+                                      [VS_PLATE_GREEN] = {130, 0.6},
+                                      [VS_PLATE_PINK] = {330, 0.55},
+                                      [VS_PLATE_CYAN] = {184, 0.7}}, // vs_plate_default
                            .tag_paper_m = VS_TAG_PAPER_M,
                            .patch_m = VS_PATCH_M};
 }
@@ -51,7 +56,7 @@ struct vs_detector {
   vs_blob_finder *blobs;
   double side_px[VS_MARKS];     // expected of the square whose corners are seen; 0: any
   double paper_ratio[VS_MARKS]; // of what is printed to it
-  vs_blob_gate ball, adversary;
+  vs_blob_gate ball, adversary, bar;
   int step; // of the colour grid
   uint8_t table[VS_COLOUR_TABLE];
 };
@@ -67,8 +72,12 @@ static void set_sizes(vs_detector *d) {
   double radius_px = scale * VS_BALL_RADIUS_M, patch_px = scale * d->def.patch_m;
   d->ball = gate_of(BALL, M_PI * radius_px * radius_px, 1);
   d->ball.max_px *= 1.4; // a fast ball is smeared over more
-  d->adversary = gate_of(ADVERSARY, patch_px * patch_px, VS_TEAM_SIZE);
+  d->adversary = gate_of(TEAM << d->def.adversary, patch_px * patch_px, VS_TEAM_SIZE);
   if (scale > 0) d->adversary.min_px = fmin(d->adversary.min_px, 0.5 * pow(scale * SMALLEST_PATCH_M, 2));
+  d->bar = gate_of(0, scale * scale * VS_PLATE_SIDE_M * VS_PLATE_SQUARE_M, 1);
+  d->bar.elongation = 4.0;
+  d->side_px[VS_MARK_COLOUR] = scale * VS_PLATE_SIDE_M;
+  d->paper_ratio[VS_MARK_COLOUR] = VS_ROBOT_SIZE_M / VS_PLATE_SIDE_M;
   double smallest_px = scale > 0 ? fmin(2 * radius_px, patch_px) : 8.0;
   d->step = (int)fmin(fmax(smallest_px / 4.0, 1.0), 4.0);
 }
@@ -112,7 +121,7 @@ vs_status vs_detector_new(const vs_detector_def *def, vs_detector **out, vs_erro
     return s;
   }
   vs_colour_table_add(d->table, &def->ball, BALL);
-  vs_colour_table_add(d->table, &def->team[def->adversary], ADVERSARY);
+  for (int team = 0; team < VS_TEAMS; team++) vs_colour_table_add(d->table, &def->team[team], (uint8_t)(TEAM << team));
   set_sizes(d);
   *out = d;
   return VS_OK;
@@ -193,11 +202,30 @@ static vs_status find_marks(const vs_detector *d, const vs_frame *frame, vs_dete
   return s;
 }
 
+// The plates of both teams, as far as they wear some.
+static vs_status find_plates(const vs_detector *d, const vs_frame *frame, vs_detections *out, vs_error *err) {
+  const vs_team team[2] = {(vs_team)(1 - d->def.adversary), d->def.adversary};
+  const vs_mark worn_by[2] = {d->def.own, d->def.their};
+  vs_status s = VS_OK;
+  for (int i = 0; i < 2 && s == VS_OK; i++) {
+    if (worn_by[i] != VS_MARK_COLOUR) continue;
+    vs_blob bar[MOST_BARS];
+    int bars = 0;
+    vs_blob_gate gate = d->bar;
+    gate.bit = (uint8_t)(TEAM << team[i]);
+    s = vs_blobs_find(d->blobs, frame, d->table, &gate, d->step, bar, MOST_BARS, &bars, err);
+    out->tags += vs_plates_read(frame, team[i], bar, bars, d->def.px_per_m, d->def.square, out->tag + out->tags,
+                                VS_MAX_TAGS - out->tags);
+  }
+  return s;
+}
+
 vs_status vs_detect(vs_detector *d, const vs_frame *frame, vs_detections *out, vs_error *err) {
   out->capture_us = frame->capture_us;
   out->seq = frame->seq;
   out->tags = out->balls = out->adversaries = 0;
   vs_status s = find_marks(d, frame, out, err);
+  if (s == VS_OK) s = find_plates(d, frame, out, err);
   if (s != VS_OK) return s;
   s = vs_blobs_find(d->blobs, frame, d->table, &d->ball, d->step, out->ball, VS_MAX_BLOBS, &out->balls, err);
   if (s == VS_OK && d->def.their == VS_MARK_PATCH)

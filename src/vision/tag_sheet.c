@@ -7,6 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "vsss/field.h"
 #include "vsss/image.h"
 #include "vsss/mark.h"
 #include "vsss/tag.h"
@@ -32,8 +33,11 @@ static void place(const sheet *s, int i, double *x_mm, double *y_mm) {
   *y_mm = MARGIN + s->margin_mm + (i / s->columns) * (s->paper_mm + 2 * s->margin_mm + GAP);
 }
 
+static bool is_plate(const sheet *s) { return !strcmp(s->family, vs_mark_name(VS_MARK_COLOUR)); }
+
 // The team whose mark it is by the league's rules, or -1.
 static int team_of(const sheet *s, int id) {
+  if (is_plate(s)) return id / 100;
   for (int k = 0; k < VS_TEAMS * VS_TEAM_SIZE && !strcmp(s->family, VS_TAG_ARUCO); k++)
     if (vs_aruco_league_id[k / VS_TEAM_SIZE][k % VS_TEAM_SIZE] == id) return k / VS_TEAM_SIZE;
   return -1;
@@ -53,24 +57,41 @@ static void paint_cells(const sheet *s, int i, bool light, const uint8_t rgb[3],
     }
 }
 
+// A colour plate on black, scaled from its 65 mm.
+static void paint_plate(const sheet *s, int i, paint_fn *paint, void *to) {
+  double x, y, square = s->paper_mm * VS_PLATE_SQUARE_M / VS_PLATE_SIDE_M, far = s->paper_mm - square;
+  place(s, i, &x, &y);
+  paint(to, x - s->margin_mm, y - s->margin_mm, s->paper_mm + 2 * s->margin_mm, s->paper_mm + 2 * s->margin_mm, black);
+  paint(to, x, y + far, s->paper_mm, square, vs_team_rgb[s->id[i] / 100]);
+  paint(to, x, y, square, square, vs_plate_rgb[s->id[i] / 10 % 10]);
+  paint(to, x + far, y, square, square, vs_plate_rgb[s->id[i] % 10]);
+}
+
 // Paper is white. The league's blue marks are white on blue, its yellow ones yellow on black.
 static void paint_tag(const sheet *s, int i, paint_fn *paint, void *to) {
-  static const uint8_t blue[3] = {24, 72, 232}, yellow[3] = {250, 214, 20};
   int team = team_of(s, s->id[i]);
+  if (is_plate(s)) {
+    paint_plate(s, i, paint, to);
+    return;
+  }
   if (team < 0) {
     paint_cells(s, i, false, black, paint, to);
     return;
   }
   double x, y; // the dark ground whole, the light cells upon it: no seams
   place(s, i, &x, &y);
-  paint(to, x, y, s->paper_mm, s->paper_mm, team == VS_BLUE ? blue : black);
-  paint_cells(s, i, true, team == VS_BLUE ? white : yellow, paint, to);
+  paint(to, x, y, s->paper_mm, s->paper_mm, team == VS_BLUE ? vs_team_rgb[VS_BLUE] : black);
+  paint_cells(s, i, true, team == VS_BLUE ? white : vs_team_rgb[VS_YELLOW], paint, to);
 }
 
 static void caption(const sheet *s, int i, char *out, size_t size) {
   int team = team_of(s, s->id[i]);
-  snprintf(out, size, "%s %d%s%s, %g mm, this edge to the rear", s->family, s->id[i], team >= 0 ? " " : "",
-           team >= 0 ? vs_team_name((vs_team)team) : "", s->paper_mm);
+  char plate[32] = "";
+  if (is_plate(s))
+    snprintf(plate, sizeof plate, " %s %s", vs_plate_colour_name((vs_plate_colour)(s->id[i] / 10 % 10)),
+             vs_plate_colour_name((vs_plate_colour)(s->id[i] % 10)));
+  snprintf(out, size, "%s %d%s%s%s, %g mm, this edge to the rear", s->family, s->id[i], team >= 0 ? " " : "",
+           team >= 0 ? vs_team_name((vs_team)team) : "", plate, s->paper_mm);
 }
 
 // PDF counts in points from the bottom left.
@@ -174,6 +195,7 @@ static vs_status lay_out(sheet *s, const char *family, const int *ids, int count
   if (!(s->paper_mm >= 10 && s->paper_mm <= PAGE_W - 2 * MARGIN))
     return vs_fail(err, VS_USAGE, "tags of %g mm: allowed are 10 to %d", s->paper_mm, PAGE_W - 2 * MARGIN);
   if (!strcmp(family, VS_TAG_ARUCO)) s->margin_mm = s->paper_mm * VS_ARUCO_MARGIN_M / VS_ARUCO_SIDE_M;
+  if (is_plate(s)) s->margin_mm = s->paper_mm * 0.5 * (VS_ROBOT_SIZE_M / VS_PLATE_SIDE_M - 1);
   s->columns = (int)((PAGE_W - 2 * MARGIN + GAP) / (s->paper_mm + 2 * s->margin_mm + GAP));
   s->rows = (int)((PAGE_H - MARGIN - 16 + GAP) / (s->paper_mm + 2 * s->margin_mm + GAP)); // 16: a caption, the bar
   if (s->columns == 0) s->columns = 1;
@@ -184,7 +206,9 @@ static vs_status lay_out(sheet *s, const char *family, const int *ids, int count
   vs_status status = VS_OK;
   for (int i = 0; i < count && status == VS_OK; i++) {
     s->id[i] = ids[i];
-    status = vs_tag_pattern_of(family, ids[i], &s->tag[i], err);
+    vs_mark_picture unused;
+    status = is_plate(s) ? vs_mark_paint(VS_MARK_COLOUR, VS_BLUE, ids[i], &unused, err)
+                         : vs_tag_pattern_of(family, ids[i], &s->tag[i], err);
   }
   return status;
 }

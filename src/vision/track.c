@@ -18,6 +18,7 @@ vs_track_def vs_track_def_default(void) {
                         .own = VS_MARK_APRIL,
                         .their = VS_MARK_PATCH,
                         .tag_id = {0, 1, 2},
+                        .plate_id = {{1, 12, 23}, {101, 112, 123}},     // vs_plate_default_code
                         .aruco_id = {{256, 272, 273}, {955, 771, 939}}, // vs_aruco_league_id
                         .tag_height_m = VS_ROBOT_HEIGHT_M,
                         .patch_height_m = VS_ROBOT_HEIGHT_M,
@@ -106,7 +107,10 @@ static bool sight_of_tag(const vs_track_def *def, const vs_calib *calib, const v
 static bool is_of(const vs_track_def *def, const vs_tag *tag, int side, int index) {
   vs_mark mark = side == VS_OWN ? def->own : def->their;
   vs_team team = side == VS_OWN ? def->team : (vs_team)(1 - def->team);
-  return tag->kind == mark && tag->id == (mark == VS_MARK_ARUCO ? def->aruco_id[team][index] : def->tag_id[index]);
+  int id = mark == VS_MARK_ARUCO    ? def->aruco_id[team][index]
+           : mark == VS_MARK_COLOUR ? def->plate_id[team][index]
+                                    : def->tag_id[index];
+  return tag->kind == mark && tag->id == id;
 }
 
 // A robot known by its mark.

@@ -43,6 +43,11 @@ int vs_vision_schema(vs_detector_def *d, vs_track_def *t, vs_camera_def *c, vs_v
   static const char *const tag[] = {"vision.robot0_tag", "vision.robot1_tag", "vision.robot2_tag"};
   static const char *const aruco[] = {"vision.blue0_aruco",   "vision.blue1_aruco",   "vision.blue2_aruco",
                                       "vision.yellow0_aruco", "vision.yellow1_aruco", "vision.yellow2_aruco"};
+  static const char *const plate[] = {"vision.blue0_plate",   "vision.blue1_plate",   "vision.blue2_plate",
+                                      "vision.yellow0_plate", "vision.yellow1_plate", "vision.yellow2_plate"};
+  static const char *const square[] = {"vision.red_hue_deg",      "vision.red_saturation", "vision.green_hue_deg",
+                                       "vision.green_saturation", "vision.pink_hue_deg",   "vision.pink_saturation",
+                                       "vision.cyan_hue_deg",     "vision.cyan_saturation"};
   static const char *const yaw[] = {"vision.robot0_yaw_rad", "vision.robot1_yaw_rad", "vision.robot2_yaw_rad"};
   rows r = {out, 0, capacity};
   whole(&r, "vision.width_px", &c->width, 0, 8192, "asked of the camera; 0: 1280x720 or 640x480");
@@ -55,10 +60,21 @@ int vs_vision_schema(vs_detector_def *d, vs_track_def *t, vs_camera_def *c, vs_v
   d->tag.family = words->family;
   snprintf(words->own_tags, sizeof words->own_tags, "%s", vs_mark_name(d->own));
   snprintf(words->their_tags, sizeof words->their_tags, "%s", vs_mark_name(d->their));
-  word(&r, "vision.own_tags", words->own_tags, sizeof words->own_tags, "what our robots wear: april or aruco");
-  word(&r, "vision.their_tags", words->their_tags, sizeof words->their_tags, "what theirs wear: patch or aruco");
+  word(&r, "vision.own_tags", words->own_tags, sizeof words->own_tags, "what our robots wear: april, aruco, colour");
+  word(&r, "vision.their_tags", words->their_tags, sizeof words->their_tags, "what theirs wear: patch, aruco, colour");
   for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++)
     whole(&r, aruco[i], &t->aruco_id[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE], -1, 1023, "ArUco mark; -1: not playing");
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
+    int code = t->plate_id[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+    char *text = words->plate[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+    snprintf(text, sizeof words->plate[0][0], "%s %s", vs_plate_colour_name((vs_plate_colour)(code / 10 % 10)),
+             vs_plate_colour_name((vs_plate_colour)(code % 10)));
+    word(&r, plate[i], text, sizeof words->plate[0][0], "left and right square; -: not playing");
+  }
+  for (int i = 0; i < VS_PLATE_COLOURS; i++) {
+    number(&r, square[2 * i], &d->square[i].hue_deg, 0, 360, "of a plate's square");
+    number(&r, square[2 * i + 1], &d->square[i].saturation, 0, 1, "of it");
+  }
   word(&r, "vision.tag_family", words->family, sizeof words->family, "AprilTags: of libapriltag");
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     whole(&r, tag[i], &t->tag_id[i], -1, 100000, "AprilTag of the robot; -1: not playing");
@@ -101,6 +117,12 @@ vs_status vs_vision_take(const vs_vision_words *words, vs_detector_def *d, vs_tr
   vs_mark own, their;
   vs_status s = vs_mark_parse("vision.own_tags =", words->own_tags, false, &own, err);
   if (s == VS_OK) s = vs_mark_parse("vision.their_tags =", words->their_tags, true, &their, err);
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE && s == VS_OK; i++) {
+    int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE;
+    char what[40];
+    snprintf(what, sizeof what, "vision.%s%d_plate =", vs_team_name((vs_team)team), index);
+    s = vs_plate_parse(what, words->plate[team][index], (vs_team)team, &t->plate_id[team][index], err);
+  }
   if (s == VS_OK) vs_vision_marks(d, t, own, their);
   return s;
 }

@@ -140,6 +140,31 @@ static void printed_tags_are_read_back_at_true_size(void **state) {
   assert_string_equal(head, "%PDF-1.4");
 }
 
+// On a printed sheet of plates: learnt colours go into the configuration that detect then reads.
+static void colours_are_learnt_from_points_and_saved_for_the_field(void **state) {
+  (void)state;
+  static vsss_run run;
+  vsss(&run, in_folder("calibrate --print-tags 1,101 --family colour --out %s/plates.png"));
+  assert_int_equal(run.status, 0);
+  char path[128];
+  snprintf(path, sizeof path, "%s/colours.txt", folder);
+  FILE *f = fopen(path, "w");
+  assert_non_null(f);
+  // Dots, 11.81 a mm: plate 1 begins at 12 + 7.5 mm, its red square's middle 15 mm on, its bar's 50 mm down; plate 101 lies
+  // 90 mm to the right.
+  fputs("408 408 red\n820 408 green\n614 821 blue\n1677 821 yellow\n", f);
+  fclose(f);
+  vsss(&run, in_folder("calibrate --colours %s/colours.txt --camera %s/plates.png --out /tmp/vsss_calibrate_test.ini"));
+  assert_int_equal(run.status, 0);
+  assert_non_null(strstr(run.out, "blue    hue 217 to 237")); // (24, 72, 232) is hue 227, 10 degrees to each side
+  vsss(&run, in_folder("detect %s/field.png --colours --config /tmp/vsss_calibrate_test.ini"));
+  assert_int_equal(run.status, 0);
+  remove("/tmp/vsss_calibrate_test.ini");
+  assert_refused("calibrate --colours /nowhere/c.txt --camera /dev/null --out /tmp/x.ini", 1, "/nowhere/c.txt");
+  assert_refused("calibrate --colours c.txt --out x.ini", 2, "--camera");
+  assert_refused("calibrate --colours c.txt --camera x.png", 2, "--out");
+}
+
 static void a_folder_of_checkerboard_pictures_gives_the_lens(void **state) {
   (void)state;
   static unsigned char grey[BOARD_WIDTH * BOARD_HEIGHT], bgr[3 * BOARD_WIDTH * BOARD_HEIGHT];
@@ -207,6 +232,7 @@ int main(void) {
       cmocka_unit_test(points_are_checked_against_a_calibration),
       cmocka_unit_test(a_snapshot_is_saved),
       cmocka_unit_test(printed_tags_are_read_back_at_true_size),
+      cmocka_unit_test(colours_are_learnt_from_points_and_saved_for_the_field),
       cmocka_unit_test(a_folder_of_checkerboard_pictures_gives_the_lens),
       cmocka_unit_test(the_example_of_points_makes_a_calibration),
       cmocka_unit_test(bad_requests_are_one_line_with_the_fix),

@@ -43,11 +43,28 @@ static void each_side_wears_what_it_can(void **state) {
   assert_int_equal(vs_mark_parse("--their-tags", "april", true, &mark, &err), VS_USAGE);
 }
 
+static void plates_have_codes_by_their_colours_names(void **state) {
+  (void)state;
+  int code;
+  vs_error err;
+  assert_int_equal(vs_plate_parse("x", "pink cyan", VS_YELLOW, &code, &err), VS_OK);
+  assert_int_equal(code, 123);
+  assert_int_equal(vs_plate_parse("x", "-", VS_YELLOW, &code, &err), VS_OK);
+  assert_int_equal(code, -1);
+  assert_int_equal(vs_plate_parse("vision.blue0_plate =", "pink", VS_BLUE, &code, &err), VS_USAGE);
+  assert_non_null(strstr(err.text, "vision.blue0_plate = pink"));
+  assert_int_equal(vs_plate_parse("x", "red green pink", VS_BLUE, &code, &err), VS_USAGE);
+  assert_int_equal(vs_plate_parse("x", "red brown", VS_BLUE, &code, &err), VS_USAGE);
+  for (int i = 0; i < VS_TEAM_SIZE; i++) assert_int_equal(vs_plate_default_code(VS_BLUE, i), 11 * i + 1);
+}
+
 static void an_id_that_is_none_is_refused(void **state) {
   (void)state;
   static vs_mark_picture p;
   vs_error err;
   assert_int_equal(vs_mark_paint(VS_MARK_ARUCO, VS_BLUE, 1024, &p, &err), VS_USAGE);
+  assert_int_equal(vs_mark_paint(VS_MARK_COLOUR, VS_BLUE, 4, &p, &err), VS_USAGE);
+  assert_int_equal(vs_mark_paint(VS_MARK_COLOUR, VS_BLUE, 201, &p, &err), VS_USAGE);
 }
 
 int main(void) {
@@ -55,6 +72,7 @@ int main(void) {
       cmocka_unit_test(the_league_s_marks_are_white_on_blue_and_yellow_on_black),
       cmocka_unit_test(a_patch_is_the_team_s_colour_in_the_middle_60_mm),
       cmocka_unit_test(each_side_wears_what_it_can),
+      cmocka_unit_test(plates_have_codes_by_their_colours_names),
       cmocka_unit_test(an_id_that_is_none_is_refused),
   };
   return cmocka_run_group_tests_name("vision/mark", tests, NULL, NULL);
