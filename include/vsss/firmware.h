@@ -2,7 +2,7 @@
 // where the rig's robots run it. No allocation, no clock of its own (millisecond counter in, may wrap), C99.
 //
 // A robot starts stopped. It takes a command frame only with a valid CRC, the right version and a seq newer (mod 256)
-// than the last it took; after 200 ms without one it brakes, and then takes any seq. A frame without its own id and
+// than the last it took; after 150 ms without one it brakes, and then takes any seq. A frame without its own id and
 // without STOP is not for it. STOP brakes and stays until a later frame without STOP. Wheel targets are limited to
 // +-46.66 rad/s. Telemetry is the caller's to send, when no command waits to be read.
 #ifndef VSSS_FIRMWARE_H
@@ -14,7 +14,8 @@
 extern "C" {
 #endif
 
-#define VS_FIRMWARE_WATCHDOG_MS 200
+// Seven frames of the sender in a row are lost before it bites; with a 30 Hz view of the motors they stand within 200 ms.
+#define VS_FIRMWARE_WATCHDOG_MS 150
 #define VS_FIRMWARE_LIMIT       4666 // 0.01 rad/s
 
 typedef struct vs_firmware {

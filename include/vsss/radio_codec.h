@@ -1,11 +1,13 @@
 // The link between the PC and the robots, protocol v1: what goes over the serial line and through the air. Pure, no
 // allocation, nothing but C: compiled into the program and into a robot's firmware alike (deploy/firmware).
 //
-// A frame is payload + CRC-16/CCITT-FALSE (poly 0x1021, start 0xFFFF; low byte first), COBS coded, ended by one 0x00.
+// A frame is payload + CRC-16/CCITT-FALSE (poly 0x1021, start 0xFFFF; low byte first), COBS coded, between two 0x00: the
+// first ends whatever noise is on the line, so that it cannot spoil the frame. A receiver takes two in a row for an idle
+// line, so one that knows only the delimiter at the end understands it too.
 // Numbers are little-endian; wheel speeds are int16 in 0.01 rad/s. The first byte is version << 4 | type.
 //   down (type 1): head, seq, flags, n, n x { id, left i16, right i16 }; one frame for all robots, no answer wanted
 //   up   (type 2): head, id, seq_echo, left i16, right i16, battery_mv u16, rssi i8, rx_ok u16, rx_bad u16, uptime_ms u32
-// Three robots: 19 + 2 bytes of payload and CRC, 23 on the line (2.0 ms at 115200 baud).
+// Three robots: 19 + 2 bytes of payload and CRC, 24 on the line (2.1 ms at 115200 baud).
 #ifndef VSSS_RADIO_CODEC_H
 #define VSSS_RADIO_CODEC_H
 
@@ -21,7 +23,7 @@ extern "C" {
 #define VS_RADIO_ROBOTS_MAX  6
 #define VS_RADIO_FLAG_STOP   0x01 // every robot that hears it brakes, named in the frame or not
 #define VS_RADIO_PAYLOAD_MAX (4 + 5 * VS_RADIO_ROBOTS_MAX)
-#define VS_RADIO_FRAME_MAX   (VS_RADIO_PAYLOAD_MAX + 2 + 2) // CRC, COBS byte, delimiter
+#define VS_RADIO_FRAME_MAX   (VS_RADIO_PAYLOAD_MAX + 2 + 3) // CRC, COBS byte, two delimiters
 
 #define VS_RADIO_UNIT_RADPS 0.01 // one count of a wheel speed
 
@@ -60,7 +62,7 @@ uint16_t vs_radio_crc(const uint8_t *bytes, size_t size); // "123456789" -> 0x29
 int16_t vs_radio_counts(double radps);
 double vs_radio_radps(int16_t counts);
 
-// Writes one whole frame with its delimiter and returns its size; 0: more robots than fit.
+// Writes one whole frame with its delimiters and returns its size; 0: more robots than fit.
 size_t vs_radio_encode(const vs_radio_frame *frame, uint8_t out[VS_RADIO_FRAME_MAX]);
 
 // Bytes in, frames out. All zero is a fresh one.

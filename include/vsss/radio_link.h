@@ -50,6 +50,9 @@ size_t vs_radio_link_due(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RAD
 // One STOP frame, due or not.
 size_t vs_radio_link_stop(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RADIO_FRAME_MAX]);
 
+// The same without touching the link, for a program that dies: seq is `ahead` of the next frame's.
+size_t vs_radio_link_last_stop(const vs_radio_link *link, uint8_t ahead, uint8_t out[VS_RADIO_FRAME_MAX]);
+
 void vs_radio_link_receive(vs_radio_link *link, const uint8_t *bytes, size_t size, int64_t now_us);
 
 // What VSSS_RADIO says of link and device.

@@ -28,7 +28,7 @@ vs_status vs_serial_open(const char *device, int baud, vs_serial **out, vs_error
 void vs_serial_close(vs_serial *serial); // NULL is allowed
 
 // Sends bytes (one frame, <= 64) or drops them; true: sent. What a full buffer cut off is sent before anything else.
-// now_us: monotonic, for the pause between attempts to reopen (0.1 s, doubling to 2 s).
+// now_us: monotonic, for the pause between attempts to reopen (50 ms, doubling to 0.2 s).
 bool vs_serial_write(vs_serial *serial, const uint8_t *bytes, size_t size, int64_t now_us);
 // Reads what is there, up to size bytes; 0: nothing.
 size_t vs_serial_read(vs_serial *serial, uint8_t *bytes, size_t size, int64_t now_us);

@@ -25,6 +25,13 @@ void vs_sender_free(vs_sender *sender);
 void vs_sender_command(vs_sender *sender, const vs_wheels wheels[VS_TEAM_SIZE], bool stop, int64_t capture_us,
                        bool now);
 
+// For the handler of a signal that ends the program (async-signal-safe, takes no lock): every sender of this process tells
+// its robots to stop, VS_RADIO_STOP_FRAMES times within 50 ms, and never writes again.
+void vs_sender_last_stop(void);
+// Installs that handler for SIGQUIT, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS and SIGTRAP; the signal then ends
+// the program as it would have without. Those who run out of the main thread's stack are served too.
+void vs_sender_stop_at_crash(void);
+
 // Copies of the link's and the device's state, consistent with each other.
 void vs_sender_state(vs_sender *sender, vs_radio_link *link, vs_serial_stats *serial);
 

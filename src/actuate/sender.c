@@ -1,13 +1,20 @@
 #include "vsss/sender.h"
 
+#include <errno.h>
 #include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
+#include <unistd.h>
 
 #include "vsss/clock.h"
 
 #define LAST_FRAMES_US 5000 // between the stops on the way out
 #define DRAIN_MS       200
+#define SENDERS_MAX    4  // of one process, for the last stop
+#define SEQ_AHEAD      16 // of any frame that another thread is writing while the program dies
 
 struct vs_sender {
   pthread_t thread;
@@ -17,9 +24,63 @@ struct vs_sender {
   vs_serial *serial; // NULL: dry
 };
 
+// What a dying program still has to stop.
+static _Atomic(vs_sender *) open_senders[SENDERS_MAX];
+static atomic_bool dying;
+
+static void remember(vs_sender *s) {
+  for (int i = 0; i < SENDERS_MAX; i++) {
+    vs_sender *none = NULL;
+    if (atomic_compare_exchange_strong(&open_senders[i], &none, s)) return;
+  }
+}
+
+static void forget(vs_sender *s) {
+  for (int i = 0; i < SENDERS_MAX; i++) {
+    vs_sender *mine = s;
+    if (atomic_compare_exchange_strong(&open_senders[i], &mine, NULL)) return;
+  }
+}
+
 // With the lock held.
 static void write_frame(vs_sender *s, const uint8_t *bytes, size_t size, int64_t now_us) {
-  if (size && s->serial) vs_serial_write(s->serial, bytes, size, now_us);
+  if (size && s->serial && !dying) vs_serial_write(s->serial, bytes, size, now_us);
+}
+
+// The thread that dies may hold the lock, and others go on: the link is copied as it is, its numbers are jumped over.
+void vs_sender_last_stop(void) {
+  if (atomic_exchange(&dying, true)) return;
+  int before = errno;
+  for (int frame = 0; frame < VS_RADIO_STOP_FRAMES; frame++) {
+    for (int i = 0; i < SENDERS_MAX; i++) {
+      const vs_sender *s = open_senders[i];
+      int fd = s && s->serial ? vs_serial_fd(s->serial) : -1;
+      if (fd < 0) continue;
+      uint8_t bytes[VS_RADIO_FRAME_MAX];
+      size_t size = vs_radio_link_last_stop(&s->link, (uint8_t)(SEQ_AHEAD + frame), bytes);
+      ssize_t written = write(fd, bytes, size); // a full buffer is the watchdog's to end
+      (void)written;
+    }
+    nanosleep(&(struct timespec){0, 1000L * LAST_FRAMES_US}, NULL);
+  }
+  errno = before;
+}
+
+// The handler is gone when it returns: an instruction that faults does so again, and a signal from outside was sent again.
+static void on_crash(int number) {
+  vs_sender_last_stop();
+  raise(number);
+}
+
+void vs_sender_stop_at_crash(void) {
+  static uint8_t stack[65536]; // the thread's own may be what ran out
+  static const int numbers[] = {SIGQUIT, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGTRAP};
+  sigaltstack(&(stack_t){.ss_sp = stack, .ss_size = sizeof stack}, NULL);
+  struct sigaction action;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = on_crash;
+  action.sa_flags = (int)(SA_ONSTACK | SA_RESETHAND);
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) sigaction(numbers[i], &action, NULL);
 }
 
 static void read_telemetry(vs_sender *s, int64_t now_us) {
@@ -60,6 +121,7 @@ vs_status vs_sender_new(const char *device, int baud, const uint8_t id[VS_TEAM_S
     free(s);
     return status;
   }
+  remember(s);
   *out = s;
   return VS_OK;
 }
@@ -77,6 +139,7 @@ void vs_sender_free(vs_sender *s) {
     vs_clock_sleep_until_us(now_us + LAST_FRAMES_US);
   }
   if (s->serial) vs_serial_drain(s->serial, DRAIN_MS);
+  forget(s);
   vs_serial_close(s->serial);
   pthread_mutex_destroy(&s->lock);
   free(s);

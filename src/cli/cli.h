@@ -60,6 +60,8 @@ int vs_cli_error(const char *command, const vs_error *err);
 // called; a second signal ends the program at once. And once standard output cannot be written any more.
 void vs_cli_catch_interrupts(void);
 bool vs_cli_interrupted(void);
+// What that second signal still does first; async-signal-safe.
+void vs_cli_before_the_end(void (*act)(void));
 // The same without disturbing a thread that computes: called before any other is started, blocks these signals in all and
 // lets a thread of its own wait for them. first is called at the first, on that thread; second at the second, after which
 // the program ends with 128 + the signal's number.

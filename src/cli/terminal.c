@@ -43,11 +43,20 @@ int vs_cli_end(const char *command, int status) {
 }
 
 static atomic_bool interrupted;
+static void (*last_act)(void);
+
+static void on_second_interrupt(int number) {
+  if (last_act) last_act();
+  signal(number, SIG_DFL);
+  raise(number);
+}
 
 static void on_interrupt(int number) {
   interrupted = true;
-  signal(number, SIG_DFL);
+  signal(number, on_second_interrupt);
 }
+
+void vs_cli_before_the_end(void (*act)(void)) { last_act = act; }
 
 static const int interrupts[] = {SIGINT, SIGTERM, SIGHUP};
 enum { INTERRUPTS = sizeof interrupts / sizeof *interrupts };

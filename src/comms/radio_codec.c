@@ -129,9 +129,10 @@ size_t vs_radio_encode(const vs_radio_frame *frame, uint8_t out[VS_RADIO_FRAME_M
     size = pack_telemetry(&frame->as.telemetry, payload);
   }
   put_u16(payload + size, vs_radio_crc(payload, size));
-  size_t coded = cobs_encode(payload, size + 2, out);
-  out[coded] = 0;
-  return coded + 1;
+  out[0] = 0; // ends whatever noise or cut frame is on the line
+  size_t coded = cobs_encode(payload, size + 2, out + 1);
+  out[1 + coded] = 0;
+  return coded + 2;
 }
 
 static bool unpack(uint8_t *bytes, size_t coded, vs_radio_frame *out) {

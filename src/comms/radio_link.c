@@ -26,10 +26,10 @@ void vs_radio_link_command(vs_radio_link *link, const vs_wheels wheels[VS_TEAM_S
   }
 }
 
-static size_t emit(vs_radio_link *link, bool stop, int64_t now_us, uint8_t out[VS_RADIO_FRAME_MAX]) {
+static size_t write_command(const vs_radio_link *link, uint8_t seq, bool stop, uint8_t out[VS_RADIO_FRAME_MAX]) {
   vs_radio_frame frame = {.type = VS_RADIO_COMMAND};
   vs_radio_command *c = &frame.as.command;
-  c->seq = link->seq++;
+  c->seq = seq;
   c->flags = stop ? VS_RADIO_FLAG_STOP : 0;
   c->n = VS_TEAM_SIZE;
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
@@ -37,10 +37,15 @@ static size_t emit(vs_radio_link *link, bool stop, int64_t now_us, uint8_t out[V
     c->robot[i].left = stop ? 0 : vs_radio_counts(link->wheels[i].left_radps);
     c->robot[i].right = stop ? 0 : vs_radio_counts(link->wheels[i].right_radps);
   }
-  link->sent_us[c->seq] = now_us;
+  return vs_radio_encode(&frame, out);
+}
+
+static size_t emit(vs_radio_link *link, bool stop, int64_t now_us, uint8_t out[VS_RADIO_FRAME_MAX]) {
+  uint8_t seq = link->seq++;
+  link->sent_us[seq] = now_us;
   link->stopping = stop;
   link->command_age_us = link->have_command ? now_us - link->command_us : -1;
-  return vs_radio_encode(&frame, out);
+  return write_command(link, seq, stop, out);
 }
 
 size_t vs_radio_link_due(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RADIO_FRAME_MAX]) {
@@ -53,6 +58,10 @@ size_t vs_radio_link_due(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RAD
 
 size_t vs_radio_link_stop(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RADIO_FRAME_MAX]) {
   return emit(link, true, now_us, out);
+}
+
+size_t vs_radio_link_last_stop(const vs_radio_link *link, uint8_t ahead, uint8_t out[VS_RADIO_FRAME_MAX]) {
+  return write_command(link, (uint8_t)(link->seq + ahead), true, out);
 }
 
 static void heard(vs_radio_link *link, const vs_radio_telemetry *t, int64_t now_us) {

@@ -14,8 +14,8 @@
 #include "vsss/clock.h"
 
 #define FRAME_MAX    64
-#define PAUSE_MIN_US 100000
-#define PAUSE_MAX_US 2000000
+#define PAUSE_MIN_US 50000
+#define PAUSE_MAX_US 200000
 
 struct vs_serial {
   char device[256];

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "player_process.h"
 #include "policy_internal.h"
 #include "vsss/field.h"
 
@@ -19,6 +20,8 @@ struct vs_player {
   const char *(*failure)(const void *state); // of a registered player, or NULL
   vs_obs_player *learned;
   vs_plugin *plugin;
+  vs_player_process *process; // all of the above live there
+  vs_player_about about;      // what it said of itself
   void *state; // api->state_size bytes
   bool started;
 };
@@ -154,6 +157,25 @@ vs_status vs_player_open(const char *uri, vs_player **out, vs_error *err) {
   return VS_OK;
 }
 
+vs_status vs_player_open_isolated(const char *uri, int patience_ms, vs_player **out, vs_error *err) {
+  *out = NULL;
+  vs_player *player = calloc(1, sizeof *player);
+  if (!player) return vs_fail(err, VS_FAIL, "%s: out of memory", uri);
+  player->uri = copy_text(uri);
+  vs_status s = player->uri ? vs_player_process_open(uri, patience_ms, &player->process, &player->about, err)
+                            : vs_fail(err, VS_FAIL, "%s: out of memory", uri);
+  if (s != VS_OK) {
+    vs_player_close(player);
+    return s;
+  }
+  *out = player;
+  return VS_OK;
+}
+
+int64_t vs_player_failures(const vs_player *player) {
+  return player->process ? vs_player_process_failures(player->process) : 0;
+}
+
 static void end_match(vs_player *player) {
   if (!player->started) return;
   player->started = false;
@@ -165,6 +187,7 @@ static void end_match(vs_player *player) {
 
 void vs_player_close(vs_player *player) {
   if (!player) return;
+  vs_player_process_close(player->process);
   end_match(player);
   if (player->plugin) vs_plugin_close(player->plugin);
   if (player->learned) player->learned->close(player->learned);
@@ -174,15 +197,25 @@ void vs_player_close(vs_player *player) {
   free(player);
 }
 
-vs_player_sees vs_player_kind(const vs_player *player) { return player->api ? VS_SEES_WORLD : VS_SEES_OBSERVATION; }
+vs_player_sees vs_player_kind(const vs_player *player) {
+  if (player->process) return player->about.sees;
+  return player->api ? VS_SEES_WORLD : VS_SEES_OBSERVATION;
+}
 
-double vs_player_rate_hz(const vs_player *player) { return player->api ? player->api->rate_hz : VS_DECISION_HZ; }
+double vs_player_rate_hz(const vs_player *player) {
+  if (player->process) return player->about.rate_hz;
+  return player->api ? player->api->rate_hz : VS_DECISION_HZ;
+}
 
 const char *vs_player_uri(const vs_player *player) { return player->uri; }
 
-const char *vs_player_name(const vs_player *player) { return player->api ? player->api->name : player->learned->name; }
+const char *vs_player_name(const vs_player *player) {
+  if (player->process) return player->about.name;
+  return player->api ? player->api->name : player->learned->name;
+}
 
 vs_status vs_player_reset(vs_player *player, uint64_t seed, vs_error *err) {
+  if (player->process) return vs_player_process_reset(player->process, seed, err);
   if (!player->api) return VS_OK;
   end_match(player);
   vs_status status = player->plugin ? vs_plugin_init(player->plugin, player->state, seed, player->options, err)
@@ -201,7 +234,9 @@ static vs_status check_speed(const vs_player *player, int robot, const char *whe
 
 vs_status vs_player_step(vs_player *player, const vs_world *view, const vs_game *game, double dt_s,
                          vs_wheels out[VS_TEAM_SIZE], vs_error *err) {
-  if (!player->api) return vs_fail(err, VS_FAIL, "player %s acts on observations, not on a world", player->uri);
+  if (vs_player_kind(player) != VS_SEES_WORLD)
+    return vs_fail(err, VS_FAIL, "player %s acts on observations, not on a world", player->uri);
+  if (player->process) return vs_player_process_step(player->process, view, game, dt_s, out, err);
   if (player->plugin) {
     vs_status status = vs_plugin_step(player->plugin, player->state, view, game, dt_s, out, err);
     if (status != VS_OK) return status;
@@ -219,6 +254,7 @@ vs_status vs_player_step(vs_player *player, const vs_world *view, const vs_game 
 }
 
 static vs_status act_team(vs_player *player, int first_row, const float *obs, float *action, vs_error *err) {
+  if (player->process) return vs_player_process_act(player->process, obs, action, err);
   vs_status status = player->learned->act(player->learned, obs, VS_TEAM_SIZE, action, err);
   if (status != VS_OK) return status;
   for (int i = 0; i < VS_TEAM_SIZE * VS_ACTION_SIZE; i++) {
@@ -231,7 +267,8 @@ static vs_status act_team(vs_player *player, int first_row, const float *obs, fl
 }
 
 vs_status vs_player_act(vs_player *player, const float *obs, int rows, float *action, vs_error *err) {
-  if (player->api) return vs_fail(err, VS_FAIL, "player %s acts on a world, not on observations", player->uri);
+  if (vs_player_kind(player) != VS_SEES_OBSERVATION)
+    return vs_fail(err, VS_FAIL, "player %s acts on a world, not on observations", player->uri);
   int whole = rows / VS_TEAM_SIZE * VS_TEAM_SIZE;
   for (int r = 0; r < whole; r += VS_TEAM_SIZE) {
     vs_status status = act_team(player, r, obs + (size_t)r * VS_OBS_SIZE, action + (size_t)r * VS_ACTION_SIZE, err);
@@ -248,7 +285,10 @@ vs_status vs_player_act(vs_player *player, const float *obs, int rows, float *ac
 }
 
 // A memoryless player still answers 1, since 0 says "cannot".
-size_t vs_player_state_size(const vs_player *player) { return player->api ? player->api->state_size : 1; }
+size_t vs_player_state_size(const vs_player *player) {
+  if (player->process) return 0;
+  return player->api ? player->api->state_size : 1;
+}
 
 void vs_player_save(const vs_player *player, void *state) {
   if (player->api)

@@ -29,7 +29,7 @@ static void without_a_command_it_sends_stop(void **state) {
   vs_radio_link link = fresh();
   uint8_t bytes[VS_RADIO_FRAME_MAX];
   size_t size = vs_radio_link_due(&link, 1000000, bytes);
-  assert_int_equal(size, 23);
+  assert_int_equal(size, 24);
   assert_int_equal(command_in(bytes, size).flags, VS_RADIO_FLAG_STOP);
   assert_true(link.stopping);
   assert_int_equal(link.command_age_us, -1);
@@ -122,7 +122,7 @@ static void robot_starts_braked_and_drives_on_a_command(void **state) {
   assert_int_equal(d.right, -1000);
 }
 
-static void watchdog_lets_drive_at_199_ms_and_brakes_at_201(void **state) {
+static void watchdog_lets_drive_at_149_ms_and_brakes_at_151(void **state) {
   (void)state;
   // From before the millisecond counter wraps to after it.
   const uint32_t starts[] = {1000, UINT32_MAX - 100};
@@ -130,8 +130,8 @@ static void watchdog_lets_drive_at_199_ms_and_brakes_at_201(void **state) {
     vs_firmware robot;
     vs_firmware_init(&robot, 4, starts[i]);
     give(&robot, 1, 0, 1000, starts[i]);
-    assert_false(vs_firmware_tick(&robot, starts[i] + 199).brake);
-    assert_true(vs_firmware_tick(&robot, starts[i] + 201).brake);
+    assert_false(vs_firmware_tick(&robot, starts[i] + 149).brake);
+    assert_true(vs_firmware_tick(&robot, starts[i] + 151).brake);
   }
 }
 
@@ -143,7 +143,7 @@ static void stale_and_repeated_frames_neither_drive_nor_feed_the_watchdog(void *
   give(&robot, 10, 0, 2000, 100);
   give(&robot, 9, 0, 2000, 100);
   assert_int_equal(vs_firmware_tick(&robot, 150).left, 1000);
-  assert_true(vs_firmware_tick(&robot, 201).brake);
+  assert_true(vs_firmware_tick(&robot, 151).brake);
   assert_int_equal(robot.rx_ok, 1);
   assert_int_equal(robot.rx_bad, 2);
 }
@@ -242,7 +242,7 @@ int main(void) {
       cmocka_unit_test(a_wheel_that_is_no_number_stops),
       cmocka_unit_test(two_robots_with_one_id_are_refused),
       cmocka_unit_test(robot_starts_braked_and_drives_on_a_command),
-      cmocka_unit_test(watchdog_lets_drive_at_199_ms_and_brakes_at_201),
+      cmocka_unit_test(watchdog_lets_drive_at_149_ms_and_brakes_at_151),
       cmocka_unit_test(stale_and_repeated_frames_neither_drive_nor_feed_the_watchdog),
       cmocka_unit_test(seq_wrap_is_followed),
       cmocka_unit_test(stop_holds_until_a_fresh_command_without_it),

@@ -122,21 +122,23 @@ static void a_device_that_goes_away_is_found_again(void **state) {
   assert_false(vs_serial_write(serial, bytes, sizeof bytes, 1000000));
   assert_false(vs_serial_get_stats(serial).up);
   assert_int_equal(vs_serial_fd(serial), -1);
-  // Not before 0.1 s, then after pauses that double.
-  assert_false(vs_serial_write(serial, bytes, sizeof bytes, 1050000));
-  assert_false(vs_serial_write(serial, bytes, sizeof bytes, 1100000)); // tried, still away: next at 1.3 s
+  // Not before 50 ms, then after pauses that double up to 0.2 s.
+  assert_false(vs_serial_write(serial, bytes, sizeof bytes, 1049999));
+  assert_false(vs_serial_write(serial, bytes, sizeof bytes, 1050000)); // tried, still away: next at 1.15 s
+  assert_false(vs_serial_write(serial, bytes, sizeof bytes, 1150000)); // then at 1.35 s
+  assert_false(vs_serial_write(serial, bytes, sizeof bytes, 1350000)); // and at 1.55 s, not at 1.75
 
   assert_ok(vs_pty_new(&pty, err)); // plugged in again, under the same name
   unlink(link_path);
   assert_int_equal(symlink(vs_pty_path(pty), link_path), 0);
-  assert_false(vs_serial_write(serial, bytes, sizeof bytes, 1299999));
-  assert_true(vs_serial_write(serial, bytes, sizeof bytes, 1300000));
+  assert_false(vs_serial_write(serial, bytes, sizeof bytes, 1549999));
+  assert_true(vs_serial_write(serial, bytes, sizeof bytes, 1550000));
   uint8_t back[4];
   assert_int_equal(read_all(back, 4), 4);
   vs_serial_stats stats = vs_serial_get_stats(serial);
   assert_true(stats.up);
   assert_int_equal(stats.reopened, 1);
-  assert_int_equal(stats.dropped, 4);
+  assert_int_equal(stats.dropped, 6);
   unlink(link_path);
 }
 

@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "vsss/player.h"
 
@@ -32,6 +33,7 @@ static void misbehave(const char *how, vs_wheels *out) {
   if (!strcmp(how, "bus")) raise(SIGBUS);
   if (!strcmp(how, "abort")) abort();
   if (!strcmp(how, "overflow")) zero = overflow(0);
+  while (!strcmp(how, "hang")) pause();
   if (!strcmp(how, "nan")) out[2].left_radps = NAN;
   if (!strcmp(how, "wrap")) out[2].left_radps = vs_wrap_rad(1.0);
 }
@@ -49,13 +51,14 @@ static vs_status init(void *state, uint64_t seed, const char *options, vs_error 
   return VS_OK;
 }
 
-// Well behaved on its first two calls.
+// Well behaved on its first two calls, or its first thirty.
 static void step(void *state, const vs_world *world, const vs_game *game, double dt_s, vs_wheels out[VS_TEAM_SIZE]) {
   (void)world, (void)game, (void)dt_s;
   memory *m = state;
   m->steps++;
   out[0].left_radps = m->steps;
   if (m->steps > 2 && !strncmp(m->options, "step=", 5)) misbehave(m->options + 5, out);
+  if (m->steps > 30 && !strncmp(m->options, "late=", 5)) misbehave(m->options + 5, out); // after a second
 }
 
 static void release(void *state) {

@@ -15,7 +15,7 @@ static char folder[64] = "/tmp/vsss_plugin_XXXXXX";
 static char root[PATH_MAX]; // of the checkout
 
 // tests/policy/plugins/bad.c with flags -> folder/name.so.
-static void compile_bad(const char *name, const char *flags) {
+static inline void compile_bad(const char *name, const char *flags) {
   char command[4 * PATH_MAX];
   snprintf(command, sizeof command,
            "cd '%s' && ${CC:-cc} -O1 -w -fPIC -shared %s -Iinclude -o '%s/%s.so' tests/policy/plugins/bad.c", root,
@@ -24,7 +24,7 @@ static void compile_bad(const char *name, const char *flags) {
 }
 
 // The example with its own Makefile -> folder/team.so.
-static void compile_example(void) {
+static inline void compile_example(void) {
   char command[3 * PATH_MAX];
   snprintf(command, sizeof command, "make -s -C '%s/deploy/examples/plugin' OUT='%s/team.so' >&2", root, folder);
   if (system(command) != 0) fail_msg("failed: %s", command);
