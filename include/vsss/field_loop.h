@@ -1,6 +1,7 @@
 // The real field, or a rig: newest frame -> tags -> poses -> tracked world -> policy -> wheels -> safety -> framed bytes
 // -> radio, then LCM. One pipeline thread, driven by frames; beside it one thread that repeats the newest command at
-// 50 Hz and stops the robots when it grows old.
+// 50 Hz and stops the robots when it grows old; the player lives in a process of its own. Nothing that goes wrong outside
+// ends it: deploy/docs/faults.md is the table of what does go wrong, what the robots do, and how play goes on.
 #ifndef VSSS_FIELD_LOOP_H
 #define VSSS_FIELD_LOOP_H
 
@@ -21,17 +22,22 @@ extern "C" {
 // No decision is made on a frame older than this; a policy that sees the past steers into walls.
 #define VS_FIELD_MAX_AGE_US 100000
 
+// A player that has not answered by then hangs: the robots stop and it is started anew.
+#define VS_FIELD_PATIENCE_MS 100
+
 typedef struct vs_field_def {
-  const char *camera; // source (camera.h)
-  const char *calib;  // file; NULL: a camera camera_height_m straight above the middle, as high as it must be
-  const char *radio;  // serial device; NULL: a dry run, everything but the bytes on the line
-  const char *policy; // player URI
-  vs_team team;       // ours; which way it attacks is in tracker.attack_plus_x
-  uint64_t seed;      // of a policy that draws
-  double duration_s;  // of the match, for the policy's clock; a referee on LCM says otherwise
+  const char *camera;   // source (camera.h)
+  const char *calib;    // file; NULL: a camera camera_height_m straight above the middle, as high as it must be
+  const char *radio;    // serial device; NULL: a dry run, everything but the bytes on the line
+  const char *policy;   // player URI
+  const char *fallback; // of the player that takes over when that one fails, and the other way round; NULL: none
+  vs_team team;         // ours; which way it attacks is in tracker.attack_plus_x
+  uint64_t seed;        // of a policy that draws
+  double duration_s;    // of the match, for the policy's clock; a referee on LCM says otherwise
   int baud;
   uint8_t radio_id[VS_TEAM_SIZE]; // number on the air of robot i
   double camera_height_m;
+  double ball_hold_s; // a ball never seen, or not for longer, stops the robots; 0: they play on with its last place
   vs_camera_def camera_def;
   vs_detector_def detector;
   vs_track_def tracker;
@@ -62,22 +68,29 @@ typedef struct vs_field_stats {
   int64_t too_old;      // not decided on: older than VS_FIELD_MAX_AGE_US
   int64_t decisions;    // commands made
   int64_t missed_ticks; // decision periods that went by without one while frames came
-  int64_t events;       // heard from a referee
+  int64_t bridged;      // missing frames that the prediction stood in for
+  int64_t camera_lost, camera_reopened;
+  int64_t player_failures; // wrong numbers, crashes, hangs; the robots stopped and the player was started anew
+  int64_t events;          // heard from a referee
   int64_t lost_messages;
   vs_histogram stage[VS_STAGES];
   vs_track_stats track;
-  vs_serial_stats serial; // zero in a dry run
+  uint64_t entered[VS_SAFETY_STATES]; // how often each state of safety.h
+  vs_serial_stats serial;             // zero in a dry run
   vs_radio_robot_state robot[VS_TEAM_SIZE];
 } vs_field_stats;
 
-// What one frame came to.
+// What one frame came to, or the time in which none came.
 typedef struct vs_field_tick_result {
-  vs_camera_got got;      // the rest is valid for VS_CAMERA_FRAME only
+  vs_camera_got got;      // VS_CAMERA_TIMEOUT: no frame; world is then predicted, or the last
+  int64_t silent_us;      // since the last frame came; without one yet: since the start
   vs_world world;         // tracked, at the frame's capture time
+  bool bridged;           // the world was predicted for a frame that did not come, and played on
+  const char *said;       // a line worth showing now: what failed, what came back; NULL: nothing. Until the next tick
   bool decided, stop;     // stop: safety holds the robots
   vs_safety_state safety; // and why
   vs_wheels wheels[VS_TEAM_SIZE];
-  int64_t age_us; // of the frame when the bytes were written
+  int64_t age_us; // of the frame when the bytes were written; of VS_CAMERA_FRAME only
 } vs_field_tick_result;
 
 typedef struct vs_field vs_field;
@@ -88,7 +101,9 @@ vs_status vs_field_new(const vs_field_def *def, vs_field **out, char *note, size
 // Sends stop frames, waits until they have left, closes all. NULL is allowed.
 void vs_field_free(vs_field *field);
 
-// Waits for the next frame (up to 100 ms) and takes it all the way to the wheels. VS_FAIL: camera gone, policy broken.
+// Waits for the next frame (up to 100 ms) and takes it all the way to the wheels. A frame that does not come is bridged by
+// the tracker's prediction for VS_TRACK_HOLD_US; then, or when the camera or the player is gone, the robots stop until it
+// is back. VS_FAIL: a recording that cannot be read.
 vs_status vs_field_tick(vs_field *field, vs_field_tick_result *out, vs_error *err);
 
 void vs_field_get_stats(vs_field *field, vs_field_stats *out);

@@ -22,7 +22,10 @@ typedef enum vs_safety_state {
   VS_SAFETY_UNARMED,  // nobody has said that the robots may move
   VS_SAFETY_RUNNING,  // the only state in which commands go out
   VS_SAFETY_HALTED,   // by the referee
+  VS_SAFETY_DARK,     // the camera is gone
   VS_SAFETY_BLIND,    // none of our robots is seen
+  VS_SAFETY_NO_BALL,  // the ball was never seen, or not for too long
+  VS_SAFETY_MINDLESS, // the player failed and is being started again
   VS_SAFETY_STALE,    // no command, or its frame is too old
   VS_SAFETY_FAULT,    // a number is none: until disarmed
   VS_SAFETY_SHUTDOWN, // the program ends: for good
@@ -37,13 +40,18 @@ enum {
   VS_SAFETY_IF_SANE = 8,   // all numbers of world and command are finite, positions are near the field
   VS_SAFETY_IF_SEEN = 16,  // at least one own robot is valid
   VS_SAFETY_IF_FRESH = 32, // the command is younger than VS_SAFETY_STALE_US and than the stop it would end
+  VS_SAFETY_IF_CAMERA = 64,
+  VS_SAFETY_IF_BALL = 128,
+  VS_SAFETY_IF_PLAYER = 256,
+  VS_SAFETY_CONDITIONS = 512,
 };
 
 typedef struct vs_safety_input {
   int64_t now_us; // monotonic, as are the others
   bool armed;     // the operator lets the robots move
   bool shutdown;
-  vs_event_kind referee; // what it last said: HALT and END stop, everything else lets play
+  bool no_camera, no_ball, no_player; // gone, lost, failed
+  vs_event_kind referee;              // what it last said: HALT and END stop, everything else lets play
   vs_team team;
   const vs_world *world; // tracked, absolute frame; NULL: none yet
   // Moment of the newest frame that control was stepped with, which decided or held the command on purpose; 0: none yet.

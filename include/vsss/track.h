@@ -34,7 +34,8 @@ typedef struct vs_track_def {
 vs_track_def vs_track_def_default(void); // blue, attacks +x, tags 0 1 2
 
 typedef struct vs_object {
-  bool seen;       // ever, since the start
+  bool seen;       // since the start or the last restart
+  bool ever;       // since the start; before it a robot is where vs_world_parked says
   int64_t seen_us; // capture time of the last measurement taken in
   int64_t time_us; // the filters are predicted to here
   vs_kalman x, y, theta;

@@ -26,7 +26,10 @@ static const row table[] = {
     {IN(FAULT),    0,            0,          VS_SAFETY_FAULT},
     {ANY,          0,            IF(SANE),   VS_SAFETY_FAULT},
     {ANY,          IF(HALTED),   0,          VS_SAFETY_HALTED},
+    {ANY,          0,            IF(CAMERA), VS_SAFETY_DARK},
     {ANY,          0,            IF(SEEN),   VS_SAFETY_BLIND},
+    {ANY,          0,            IF(BALL),   VS_SAFETY_NO_BALL},
+    {ANY,          0,            IF(PLAYER), VS_SAFETY_MINDLESS},
     {ANY,          0,            IF(FRESH),  VS_SAFETY_STALE},
     {ANY,          0,            0,          VS_SAFETY_RUNNING},
     // clang-format on
@@ -64,7 +67,8 @@ static unsigned conditions_of(const vs_safety *safety, const vs_safety_input *in
   bool any_seen = false;
   for (int i = 0; i < VS_TEAM_SIZE; i++) any_seen = any_seen || seen(in, i);
   return (in->shutdown ? IF(SHUTDOWN) : 0) | (in->armed ? IF(ARMED) : 0) | (halted ? IF(HALTED) : 0) |
-         (sane(in) ? IF(SANE) : 0) | (any_seen ? IF(SEEN) : 0) | (fresh(safety, in) ? IF(FRESH) : 0);
+         (sane(in) ? IF(SANE) : 0) | (any_seen ? IF(SEEN) : 0) | (fresh(safety, in) ? IF(FRESH) : 0) |
+         (in->no_camera ? 0 : IF(CAMERA)) | (in->no_ball ? 0 : IF(BALL)) | (in->no_player ? 0 : IF(PLAYER));
 }
 
 vs_safety_state vs_safety_step(vs_safety *safety, const vs_safety_input *input, vs_wheels out[VS_TEAM_SIZE]) {
@@ -89,7 +93,10 @@ static const struct {
     [VS_SAFETY_UNARMED] = {"unarmed", "the robots have not been released"},
     [VS_SAFETY_RUNNING] = {"running", ""},
     [VS_SAFETY_HALTED] = {"halted", "the referee has stopped play"},
+    [VS_SAFETY_DARK] = {"no camera", "the camera is gone; it is being looked for"},
     [VS_SAFETY_BLIND] = {"blind", "the camera sees none of our robots"},
+    [VS_SAFETY_NO_BALL] = {"no ball", "the ball is not seen"},
+    [VS_SAFETY_MINDLESS] = {"no player", "the player failed and is being started again"},
     [VS_SAFETY_STALE] = {"stale", "there is no command from a frame of the last 150 ms"},
     [VS_SAFETY_FAULT] = {"fault", "a position or a command was not a number; release the robots anew"},
     [VS_SAFETY_SHUTDOWN] = {"shutdown", "the program is ending"},

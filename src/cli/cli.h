@@ -69,7 +69,7 @@ vs_status vs_cli_await_interrupts(void (*first)(void *context), void (*second)(v
                                   vs_error *err);
 
 // Lines that rewrite themselves on a terminal: bar, fraction, time left, then text, of which each '\n' begins another
-// line; all are cut to the terminal's width. Silent where stderr is no terminal.
+// line; all are cut to the terminal's width. Below 0 the fraction is not known: the text alone. Silent where stderr is no terminal.
 typedef struct vs_progress {
   long long start_us, last_us;
   double start_fraction; // what was done when it began, once shown

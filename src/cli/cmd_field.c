@@ -10,10 +10,12 @@
 #include "vsss/clock.h"
 #include "vsss/field_loop.h"
 #include "vsss/frame_stream.h"
+#include "vsss/sender.h"
 #include "world_csv.h"
 
 typedef struct options {
-  const char *camera, *radio, *policy, *team, *attack, *calib, *config, *lcm, *stats, *record, *own_tags, *their_tags;
+  const char *camera, *radio, *policy, *team, *attack, *calib, *config, *lcm, *stats, *record, *fallback;
+  const char *own_tags, *their_tags;
   double seconds;
   int seed, rt;
   bool no_lcm, help;
@@ -31,6 +33,7 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
       {"camera", VS_FLAG_TEXT, &o->camera, "SOURCE", camera_help, 0, 0},
       {"radio", VS_FLAG_TEXT, &o->radio, "DEVICE", "serial device of the robots' radio", 0, 0},
       {"policy", VS_FLAG_TEXT, &o->policy, "URI", "who decides; default: field.ini's", 0, 0},
+      {"fallback", VS_FLAG_TEXT, &o->fallback, "URI", "takes over when the policy fails", 0, 0},
       {"team", VS_FLAG_TEXT, &o->team, "TEAM", "ours: blue or yellow", 0, 0},
       {"attack", VS_FLAG_TEXT, &o->attack, "+x|-x", "towards which end of the calibration's frame we play", 0, 0},
       {"calib", VS_FLAG_TEXT, &o->calib, "FILE", "calibration of the camera ('vsss calibrate' makes it)", 0, 0},
@@ -65,6 +68,7 @@ static vs_status fill(const options *o, vs_field_config *config, vs_error *err) 
   def->camera = o->camera;
   if (o->radio) def->radio = o->radio;
   if (o->policy) def->policy = o->policy;
+  if (o->fallback) def->fallback = o->fallback;
   if (o->team) s = vs_cli_team("--team", o->team, &def->team, err);
   if (s != VS_OK) return s;
   vs_mark own = def->detector.own, their = def->detector.their;
@@ -102,8 +106,9 @@ static void print_setup(const vs_field *field, const vs_field_def *def, const ch
   printf("camera  %s  %dx%d", camera->name, camera->width, camera->height);
   if (camera->fps > 0) printf(", %g pictures a second", camera->fps);
   if (camera->exposure_ms > 0) printf(", exposure %.1f ms", camera->exposure_ms);
-  printf("\npolicy  %s for %s, attacking %s\n", def->policy, vs_team_name(def->team),
-         def->tracker.attack_plus_x ? "+x" : "-x");
+  printf("\npolicy  %s for %s, attacking %s%s%s\n", def->policy, vs_team_name(def->team),
+         def->tracker.attack_plus_x ? "+x" : "-x", def->fallback ? "; when it fails " : "",
+         def->fallback ? def->fallback : "");
   if (def->radio)
     printf("radio   %s, %d baud\n", def->radio, def->baud);
   else
@@ -133,11 +138,21 @@ static int valid_robots(const vs_world *world, vs_team team) {
 static void show_progress(vs_progress *progress, const vs_field_def *def, double share,
                           const vs_field_tick_result *tick) {
   vs_team other = def->team == VS_BLUE ? VS_YELLOW : VS_BLUE;
-  char text[120];
-  snprintf(text, sizeof text, "sees own %d, other %d, ball %d  camera to radio %5.1f ms%s%s",
-           valid_robots(&tick->world, def->team), valid_robots(&tick->world, other), tick->world.ball.valid,
-           1e-3 * (double)tick->age_us, tick->stop ? "  STOP: " : "", tick->stop ? vs_safety_name(tick->safety) : "");
+  char text[240], latency[32] = "";
+  if (tick->got == VS_CAMERA_FRAME) snprintf(latency, sizeof latency, "%5.1f ms", 1e-3 * (double)tick->age_us);
+  if (tick->silent_us > 500000)
+    snprintf(latency, sizeof latency, "NO PICTURE for %.1f s", 1e-6 * (double)tick->silent_us);
+  snprintf(text, sizeof text, "sees own %d, other %d, ball %d  camera to radio %s%s%s",
+           valid_robots(&tick->world, def->team), valid_robots(&tick->world, other), tick->world.ball.valid, latency,
+           tick->stop ? "  STOP: " : "", tick->stop ? vs_safety_reason(tick->safety) : "");
   vs_progress_show(progress, share, text);
+}
+
+// What happened, with the second it happened in.
+static void tell(vs_progress *progress, double at_s, const char *said) {
+  vs_progress_clear(progress);
+  printf("%8.2f s  %s\n", at_s, said);
+  fflush(stdout);
 }
 
 static vs_status run(const options *o, const vs_field_def *def, vs_field *field, vs_error *err) {
@@ -153,8 +168,9 @@ static vs_status run(const options *o, const vs_field_def *def, vs_field *field,
     s = vs_field_tick(field, &tick, err);
     if (s != VS_OK || tick.got == VS_CAMERA_END) break;
     spent_s = 1e-6 * (double)(vs_clock_monotonic_us() - start_us);
+    if (tick.said) tell(&progress, spent_s, tick.said);
+    show_progress(&progress, def, o->seconds > 0 ? spent_s / o->seconds : -1, &tick);
     if (tick.got != VS_CAMERA_FRAME) continue;
-    show_progress(&progress, def, o->seconds > 0 ? spent_s / o->seconds : 0, &tick);
     mark_seen(field, def, &tick.world);
     vs_world_csv_write(&record, &tick.world, VS_EVENT_NONE);
   }
@@ -178,6 +194,8 @@ int cmd_field(int argc, char **argv) {
   if (s != VS_OK) return vs_cli_error("field", &err);
   use_rig_calib(&o, &config.def, rig_calib, sizeof rig_calib);
   vs_cli_catch_interrupts();
+  vs_cli_before_the_end(vs_sender_last_stop);
+  vs_sender_stop_at_crash();
   if (o.rt) vs_cli_realtime(o.rt);
   s = vs_field_new(&config.def, &field, note, sizeof note, &err);
   if (s != VS_OK) return vs_cli_error("field", &err);

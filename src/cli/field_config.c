@@ -7,16 +7,18 @@
 #include "vsss/paths.h"
 #include "vsss/vision_config.h"
 
-enum { ROWS = 120, OWN_ROWS = 11 };
+enum { ROWS = 120, OWN_ROWS = 13 };
 
 static vs_status load(const char *path, vs_field_config *c, vs_error *err) {
   vs_field_def *d = &c->def;
   vs_config_key rows[ROWS] = {
       {"field.policy", VS_CONFIG_TEXT, c->policy, sizeof c->policy, 0, 0, "who decides: a player URI"},
+      {"field.fallback", VS_CONFIG_TEXT, c->fallback, sizeof c->fallback, 0, 0, "takes over when that fails"},
       {"field.team", VS_CONFIG_TEXT, c->team, sizeof c->team, 0, 0, "blue or yellow"},
       {"field.attack", VS_CONFIG_TEXT, c->attack, sizeof c->attack, 0, 0, "+x or -x; empty: blue +x, yellow -x"},
       {"field.duration_s", VS_CONFIG_REAL, &d->duration_s, 0, 1, 86400, "of a match, until a referee says otherwise"},
       {"field.camera_height_m", VS_CONFIG_REAL, &d->camera_height_m, 0, 1, 5, "where there is no calibration"},
+      {"field.ball_hold_s", VS_CONFIG_REAL, &d->ball_hold_s, 0, 0, 60, "a ball lost for longer stops; 0: never"},
       {"radio.device", VS_CONFIG_TEXT, c->radio, sizeof c->radio, 0, 0, "serial device; empty: a dry run"},
       {"radio.baud", VS_CONFIG_INT, &d->baud, 0, 1200, 4000000, "of the serial device"},
       {"radio.robot0_id", VS_CONFIG_INT, &c->radio_id[0], 0, 0, 255, "number on the air of robot 0"},
@@ -46,6 +48,7 @@ vs_status vs_field_config_load(const char *path, vs_field_config *c, vs_error *e
   if (s == VS_OK) s = load(path, c, err);
   if (s != VS_OK) return s;
   if (*c->policy) d->policy = c->policy;
+  if (*c->fallback) d->fallback = c->fallback;
   if (*c->radio) d->radio = c->radio;
   for (int i = 0; i < VS_TEAM_SIZE; i++) d->radio_id[i] = (uint8_t)c->radio_id[i];
   if (*c->team && vs_cli_team("field.team =", c->team, &d->team, err) != VS_OK) return vs_fail_prefix(err, "%s", path);

@@ -7,7 +7,7 @@
 
 typedef struct vs_field_config {
   vs_field_def def; // its texts point into this struct
-  char policy[256], radio[256], team[16], attack[8];
+  char policy[256], fallback[256], radio[256], team[16], attack[8];
   vs_vision_words vision;
   int radio_id[VS_TEAM_SIZE];
 } vs_field_config;

@@ -17,6 +17,14 @@ void vs_field_report_print(const vs_field_stats *s) {
   }
   printf("\n%lld frames, %lld dropped, %lld too old to decide on; %lld decisions, %lld missed\n", (long long)s->frames,
          (long long)s->dropped, (long long)s->too_old, (long long)s->decisions, (long long)s->missed_ticks);
+  printf("%lld missing frames bridged; camera lost %lld times, back %lld times; player failed %lld times\n",
+         (long long)s->bridged, (long long)s->camera_lost, (long long)s->camera_reopened,
+         (long long)s->player_failures);
+  printf("stopped:");
+  for (int i = 0; i < VS_SAFETY_STATES; i++)
+    if (s->entered[i] && i != VS_SAFETY_RUNNING)
+      printf(" %s %llu,", vs_safety_name((vs_safety_state)i), (unsigned long long)s->entered[i]);
+  printf(" released %llu times\n", (unsigned long long)s->entered[VS_SAFETY_RUNNING]);
   printf("radio: %lld frames written, %lld dropped, device reopened %lld times; referee spoke %lld times\n",
          (long long)s->serial.sent, (long long)s->serial.dropped, (long long)s->serial.reopened, (long long)s->events);
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
@@ -34,6 +42,12 @@ vs_status vs_field_report_json(const char *path, const vs_field_stats *s, vs_err
           (long long)s->dropped, (long long)s->too_old);
   fprintf(f, "  \"decisions\": %lld,\n  \"missed_ticks\": %lld,\n  \"referee_events\": %lld,\n",
           (long long)s->decisions, (long long)s->missed_ticks, (long long)s->events);
+  fprintf(f, "  \"bridged\": %lld,\n  \"camera_lost\": %lld,\n  \"camera_reopened\": %lld,\n", (long long)s->bridged,
+          (long long)s->camera_lost, (long long)s->camera_reopened);
+  fprintf(f, "  \"player_failures\": %lld,\n  \"entered\": {", (long long)s->player_failures);
+  for (int i = 0; i < VS_SAFETY_STATES; i++)
+    fprintf(f, "%s\"%s\": %llu", i ? ", " : "", vs_safety_name((vs_safety_state)i), (unsigned long long)s->entered[i]);
+  fprintf(f, "},\n");
   fprintf(f, "  \"radio_sent\": %lld,\n  \"radio_dropped\": %lld,\n  \"lost_messages\": %lld,\n",
           (long long)s->serial.sent, (long long)s->serial.dropped, (long long)s->lost_messages);
   fprintf(f, "  \"stages\": [");

@@ -151,8 +151,11 @@ void vs_progress_show(vs_progress *progress, double fraction, const char *text) 
   for (int i = 0; i < WIDTH; i++) bar[i] = i < full ? '#' : '.';
   bar[WIDTH] = '\0';
   int left_s = (int)seconds_left(progress, fraction, now), line = (int)strcspn(text, "\n");
-  snprintf(first, sizeof first, "[%s] %3.0f %% %2d:%02d left  %.*s", bar, 100.0 * fraction, left_s / 60, left_s % 60,
-           line, text);
+  if (fraction < 0.0)
+    snprintf(first, sizeof first, "%.*s", line, text);
+  else
+    snprintf(first, sizeof first, "[%s] %3.0f %% %2d:%02d left  %.*s", bar, 100.0 * fraction, left_s / 60, left_s % 60,
+             line, text);
   rewind_lines(progress);
   fprintf(stderr, "%.*s", width, first);
   for (text += line; *text; text += line) {

@@ -5,28 +5,34 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "vsss/sender.h"
+#include "eyes.h"
 #include "tap.h"
 #include "vsss/clock.h"
 #include "vsss/control.h"
+#include "vsss/sender.h"
 
 #define WAIT_MS 100 // for a frame; so that a dead camera does not make us deaf to Ctrl-C
 
 struct vs_field {
   vs_field_def def;
-  vs_camera *camera;
+  vs_eyes eyes;
   vs_calib calib;
   vs_detector *detector;
   vs_tracker tracker;
-  vs_control *control;
+  vs_control *control[2]; // the policy's and the fallback's (NULL: none)
+  int plays;              // which of them
+  bool mindless;          // it failed and has not decided since
   vs_sender *sender;
   vs_tap tap;
   vs_game game; // absolute frame
   vs_safety safety;
-  int64_t start_us, last_capture_us, last_decision_us;
+  int64_t start_us, last_decision_us;
+  int64_t step_us;           // moment of the world that control was stepped with last; 0: none yet
+  int64_t came_us, awake_us; // when the last frame came; when a missing one is bridged
   uint32_t last_seq;
   vs_detections seen;
-  int64_t mark_us; // end of the last stage
+  char said[400], why_dark[sizeof((vs_eyes *)0)->why]; // the last lines of each kind
+  int64_t mark_us;                                     // end of the last stage
   vs_field_stats stats;
   vs_histogram second[VS_STAGES]; // of the present second
 };
@@ -38,13 +44,14 @@ const char *vs_stage_name(vs_stage stage) {
 }
 
 vs_field_def vs_field_def_default(void) {
-  return (vs_field_def){.policy = "emc:",
+  return (vs_field_def){.policy = "onnx:",
                         .team = VS_BLUE,
                         .seed = 1,
                         .duration_s = 120,
                         .baud = VS_SERIAL_BAUD,
                         .radio_id = {0, 1, 2},
                         .camera_height_m = 2.2,
+                        .ball_hold_s = 3,
                         .camera_def = vs_camera_def_default(),
                         .detector = vs_detector_def_default(),
                         .tracker = vs_track_def_default(),
@@ -59,7 +66,7 @@ static void add_note(char *note, size_t size, const char *text) {
 
 // Without a file: a lens straight above the middle that just sees the goals and the side walls (0.90 m and 0.68 m out).
 static vs_status get_calib(vs_field *f, char *note, size_t note_size, vs_error *err) {
-  const vs_camera_info *info = vs_camera_about(f->camera);
+  const vs_camera_info *info = &f->eyes.info;
   if (f->def.calib) {
     vs_status s = vs_calib_load(f->def.calib, &f->calib, err);
     return s == VS_OK ? vs_calib_check_size(&f->calib, f->def.calib, info->width, info->height, err) : s;
@@ -75,9 +82,9 @@ static vs_status get_calib(vs_field *f, char *note, size_t note_size, vs_error *
 }
 
 static vs_status open_eyes(vs_field *f, char *note, size_t note_size, vs_error *err) {
-  vs_status s = vs_camera_open(f->def.camera, &f->def.camera_def, &f->camera, err);
+  vs_status s = vs_eyes_open(&f->eyes, f->def.camera, &f->def.camera_def, err);
   if (s != VS_OK) return s;
-  const vs_camera_info *info = vs_camera_about(f->camera);
+  const vs_camera_info *info = &f->eyes.info;
   if (*info->note) add_note(note, note_size, info->note);
   s = get_calib(f, note, note_size, err);
   if (s != VS_OK) return s;
@@ -88,16 +95,16 @@ static vs_status open_eyes(vs_field *f, char *note, size_t note_size, vs_error *
   return vs_detector_new(&f->def.detector, &f->detector, err);
 }
 
-static vs_status open_brain(vs_field *f, vs_error *err) {
+static vs_status open_brain(vs_field *f, const char *uri, vs_control **control, vs_error *err) {
   vs_player *player;
-  vs_status s = vs_player_open(f->def.policy, &player, err);
+  vs_status s = vs_player_open_isolated(uri, VS_FIELD_PATIENCE_MS, &player, err);
   if (s != VS_OK) return s;
-  s = vs_control_new(player, &f->control, err);
+  s = vs_control_new(player, control, err);
   if (s != VS_OK) {
     vs_player_close(player);
     return s;
   }
-  return vs_control_reset(f->control, f->def.seed, false, err);
+  return vs_control_reset(*control, f->def.seed, false, err);
 }
 
 vs_status vs_field_new(const vs_field_def *def, vs_field **out, char *note, size_t note_size, vs_error *err) {
@@ -107,8 +114,11 @@ vs_status vs_field_new(const vs_field_def *def, vs_field **out, char *note, size
   if (!f) return vs_fail(err, VS_FAIL, "out of memory");
   f->def = *def;
   f->game.duration_s = def->duration_s;
+  f->came_us = vs_clock_monotonic_us();
   vs_safety_init(&f->safety, vs_clock_monotonic_us());
-  vs_status s = open_brain(f, err);
+  // Before anything starts a thread: the players' processes are forked from here.
+  vs_status s = open_brain(f, def->policy, &f->control[0], err);
+  if (s == VS_OK && def->fallback) s = open_brain(f, def->fallback, &f->control[1], err);
   if (s == VS_OK) s = vs_sender_new(def->radio, def->baud, def->radio_id, &f->sender, err);
   if (s == VS_OK) s = open_eyes(f, note, note_size, err);
   if (s == VS_OK) s = vs_tap_open(&f->tap, &f->def, &f->calib, note, note_size, err);
@@ -125,8 +135,8 @@ void vs_field_free(vs_field *f) {
   vs_sender_free(f->sender); // the robots stop first
   vs_tap_close(&f->tap);
   vs_detector_free(f->detector);
-  vs_control_free(f->control);
-  vs_camera_close(f->camera);
+  for (int i = 0; i < 2; i++) vs_control_free(f->control[i]);
+  vs_eyes_close(&f->eyes);
   free(f);
 }
 
@@ -151,8 +161,9 @@ static void hear_referee(vs_field *f, int64_t now_us) {
     f->game.duration_s = said->duration_s;
     memcpy(f->game.score, said->score, sizeof f->game.score);
     vs_track_restart(&f->tracker);
-    vs_control_restart(f->control);
+    for (int i = 0; i < 2 && f->control[i]; i++) vs_control_restart(f->control[i]);
   }
+  if (!f->start_us) return;
   double from_s = f->tap.heard_us ? f->game.last_event.time_s : 0.0;
   int64_t since_us = now_us - (f->tap.heard_us ? f->tap.heard_us : f->start_us);
   f->game.time_s = fmin(from_s + 1e-6 * (double)since_us, f->game.duration_s);
@@ -167,72 +178,162 @@ static void count_frame(vs_field *f, const vs_frame *frame) {
 
 // A decision that came more than half a period late is one or more missed.
 static void count_decision(vs_field *f, int64_t capture_us) {
-  double period_us = 1e6 / vs_player_rate_hz(vs_control_player(f->control));
+  double period_us = 1e6 / vs_player_rate_hz(vs_control_player(f->control[f->plays]));
   double periods = f->last_decision_us ? (double)(capture_us - f->last_decision_us) / period_us : 1.0;
   if (periods > 1.5) f->stats.missed_ticks += llround(periods) - 1;
   f->last_decision_us = capture_us;
   f->stats.decisions++;
 }
 
-// The last word before the radio.
-static void judge(vs_field *f, int64_t capture_us, vs_field_tick_result *r) {
+static void say(vs_field *f, vs_field_tick_result *r, const char *format, const char *what) {
+  snprintf(f->said, sizeof f->said, format, what);
+  r->said = f->said;
+}
+
+// The last word before the radio. moment_us: of the world that the wheels answer to.
+static void judge(vs_field *f, int64_t moment_us, vs_field_tick_result *r) {
+  const vs_object *ball = &f->tracker.ball;
+  int64_t hold_us = llround(1e6 * f->def.ball_hold_s);
   vs_safety_input in = {.now_us = vs_clock_monotonic_us(),
                         .armed = true, // by having started the program
+                        .no_camera = !f->eyes.camera,
+                        .no_ball = hold_us > 0 && (!ball->ever || r->world.time_us - ball->seen_us > hold_us),
+                        .no_player = f->mindless,
                         .referee = f->game.last_event.kind,
                         .team = f->def.team,
                         .world = &r->world,
-                        .command_us = capture_us};
+                        .command_us = moment_us};
   memcpy(in.wheels, r->wheels, sizeof in.wheels);
   r->safety = vs_safety_step(&f->safety, &in, r->wheels);
   r->stop = r->safety != VS_SAFETY_RUNNING;
 }
 
-vs_status vs_field_tick(vs_field *f, vs_field_tick_result *r, vs_error *err) {
-  memset(r, 0, sizeof *r);
-  vs_frame frame;
-  vs_status s = vs_camera_read(f->camera, WAIT_MS, &frame, &r->got, err);
-  if (s != VS_OK || r->got != VS_CAMERA_FRAME) return s;
-  count_frame(f, &frame);
+// Lets the player decide on r->world, when its rate says so. One that fails leaves the robots stopped until it, or the
+// other one, decides again.
+static void decide(vs_field *f, vs_field_tick_result *r) {
+  double dt_s = f->step_us ? fmax(0.0, 1e-6 * (double)(r->world.time_us - f->step_us)) : 0.0;
+  vs_error why = {0};
+  vs_status s =
+      vs_control_step(f->control[f->plays], f->def.team, &r->world, &f->game, dt_s, r->wheels, &r->decided, &why);
+  if (r->world.time_us > f->step_us) f->step_us = r->world.time_us;
+  if (s == VS_OK) {
+    if (r->decided && f->mindless) say(f, r, "%s plays", vs_player_uri(vs_control_player(f->control[f->plays])));
+    if (r->decided) f->mindless = false;
+    return;
+  }
+  r->decided = false;
+  if (!f->mindless) say(f, r, "%s; the robots are stopped", why.text);
+  f->mindless = true;
+  if (!f->control[1]) return;
+  f->plays = 1 - f->plays;
+  vs_control_restart(f->control[f->plays]);
+}
+
+// Takes a frame in; false: it cannot be read, its camera was given up.
+static bool see(vs_field *f, const vs_frame *frame, vs_field_tick_result *r) {
+  count_frame(f, frame);
   mark(f, VS_STAGE_CAMERA);
-
-  s = vs_detect(f->detector, &frame, &f->seen, err);
-  if (s != VS_OK) return s;
+  vs_error why = {0};
+  if (vs_detect(f->detector, frame, &f->seen, &why) != VS_OK) {
+    vs_eyes_lose(&f->eyes, why.text);
+    return false;
+  }
   mark(f, VS_STAGE_DETECT);
-
-  hear_referee(f, frame.capture_us);
+  hear_referee(f, frame->capture_us);
   vs_track_update(&f->tracker, &f->calib, &f->seen);
   vs_track_world(&f->tracker, 0, &r->world);
   mark(f, VS_STAGE_TRACK);
+  return true;
+}
 
-  int64_t age_us = vs_clock_monotonic_us() - frame.capture_us;
-  if (age_us > VS_FIELD_MAX_AGE_US) { // the last command ages too: the sender stops the robots if this goes on
-    f->stats.too_old++;
-    return VS_OK;
-  }
-  double dt_s = f->last_capture_us ? 1e-6 * (double)(frame.capture_us - f->last_capture_us) : 0.0;
-  f->last_capture_us = frame.capture_us;
-  s = vs_control_step(f->control, f->def.team, &r->world, &f->game, dt_s, r->wheels, &r->decided, err);
-  if (s != VS_OK) return s;
-  mark(f, VS_STAGE_CONTROL);
-
-  judge(f, frame.capture_us, r);
-  vs_sender_command(f->sender, r->wheels, r->stop, frame.capture_us, r->decided);
-  mark(f, VS_STAGE_WRITE);
-  r->age_us = f->mark_us - frame.capture_us;
-  if (r->decided) {
-    count_decision(f, frame.capture_us);
-    count(f, VS_STAGE_AGE, age_us, f->mark_us);
-    count(f, VS_STAGE_TOTAL, r->age_us, f->mark_us);
-  }
-
-  vs_tap_frame(&f->tap, &r->world, &f->game, &f->seen, frame.width, frame.height);
+static void publish(vs_field *f, const vs_frame *frame, const vs_field_tick_result *r) {
+  if (frame) vs_tap_frame(&f->tap, &r->world, &f->game, &f->seen, frame->width, frame->height);
   vs_tap_command(&f->tap, &r->world, r->wheels, r->stop);
-  if (r->decided) vs_tap_decision(&f->tap, f->control, &r->world);
-  vs_tap_picture(&f->tap, &frame);
+  if (r->decided) vs_tap_decision(&f->tap, f->control[f->plays], &r->world);
+  if (frame) vs_tap_picture(&f->tap, frame);
+}
+
+static void publish_slowly(vs_field *f) {
   vs_radio_link link;
   vs_sender_state(f->sender, &link, &f->stats.serial);
   vs_tap_slow(&f->tap, &f->stats, &link, f->second);
+}
+
+static void play(vs_field *f, const vs_frame *frame, vs_field_tick_result *r) {
+  int64_t age_us = vs_clock_monotonic_us() - frame->capture_us;
+  if (age_us > VS_FIELD_MAX_AGE_US) { // the last command ages too: the sender stops the robots if this goes on
+    f->stats.too_old++;
+    return;
+  }
+  decide(f, r);
+  mark(f, VS_STAGE_CONTROL);
+  judge(f, frame->capture_us, r);
+  vs_sender_command(f->sender, r->wheels, r->stop, frame->capture_us, r->decided || r->stop);
+  mark(f, VS_STAGE_WRITE);
+  r->age_us = f->mark_us - frame->capture_us;
+  if (r->decided) {
+    count_decision(f, frame->capture_us);
+    count(f, VS_STAGE_AGE, age_us, f->mark_us);
+    count(f, VS_STAGE_TOTAL, r->age_us, f->mark_us);
+  }
+  publish(f, frame, r);
+  publish_slowly(f);
   mark(f, VS_STAGE_PUBLISH);
+}
+
+static int64_t period_us(const vs_field *f) {
+  double fps = f->eyes.info.fps;
+  return llround(1e6 / (fps >= 10.0 && fps <= 240.0 ? fps : VS_CAMERA_HZ));
+}
+
+// No frame when one was due: the prediction stands in for it as long as the tracker holds what it saw. What is decided on
+// it ages as if it had been seen then, so that robots which nobody sees stop VS_TRACK_HOLD_US + VS_SAFETY_STALE_US after
+// the last frame at the latest; at once where the camera is known to be gone.
+static void play_blind(vs_field *f, vs_field_tick_result *r) {
+  int64_t next_us = f->step_us + period_us(f), now_us = vs_clock_monotonic_us();
+  hear_referee(f, now_us);
+  r->bridged = f->eyes.camera && f->step_us && now_us >= f->awake_us && next_us <= now_us &&
+               next_us - f->tracker.time_us <= VS_TRACK_HOLD_US;
+  f->awake_us = now_us + period_us(f);
+  vs_track_world(&f->tracker, r->bridged ? next_us : f->step_us, &r->world);
+  if (r->bridged) {
+    f->stats.bridged++;
+    decide(f, r);
+    if (r->decided) count_decision(f, next_us);
+  }
+  judge(f, f->step_us, r);
+  if (r->bridged || r->stop) vs_sender_command(f->sender, r->wheels, r->stop, f->step_us, r->decided || r->stop);
+  if (r->bridged || r->stop) publish(f, NULL, r);
+  publish_slowly(f);
+}
+
+// Until the next frame, or until a missing one is bridged.
+static int wait_ms(const vs_field *f) {
+  if (!f->eyes.camera || !f->step_us || f->step_us + period_us(f) - f->tracker.time_us > VS_TRACK_HOLD_US)
+    return WAIT_MS;
+  int64_t left_us = f->awake_us - vs_clock_monotonic_us();
+  return left_us <= 0 ? 0 : left_us < 1000 * WAIT_MS ? (int)((left_us + 999) / 1000) : WAIT_MS;
+}
+
+vs_status vs_field_tick(vs_field *f, vs_field_tick_result *r, vs_error *err) {
+  memset(r, 0, sizeof *r);
+  vs_frame frame;
+  int64_t lost = f->eyes.lost, reopened = f->eyes.reopened;
+  vs_status s = vs_eyes_read(&f->eyes, wait_ms(f), &frame, &r->got, err);
+  if (s != VS_OK || r->got == VS_CAMERA_END) return s;
+  if (r->got == VS_CAMERA_FRAME && !see(f, &frame, r)) r->got = VS_CAMERA_TIMEOUT;
+  if (!f->eyes.camera && (f->eyes.lost != lost || strcmp(f->eyes.why, f->why_dark)))
+    say(f, r, "camera gone: %s; the robots are stopped, looking for it", f->eyes.why);
+  snprintf(f->why_dark, sizeof f->why_dark, "%s", f->eyes.why);
+  if (f->eyes.reopened != reopened) say(f, r, "camera back: %s", f->eyes.info.name);
+  if (r->got == VS_CAMERA_FRAME) {
+    f->came_us = vs_clock_monotonic_us();
+    f->awake_us = f->came_us + period_us(f) * 3 / 2;
+    play(f, &frame, r);
+  } else {
+    play_blind(f, r);
+  }
+  r->silent_us = vs_clock_monotonic_us() - f->came_us;
   return VS_OK;
 }
 
@@ -242,8 +343,14 @@ void vs_field_get_stats(vs_field *f, vs_field_stats *out) {
   memcpy(f->stats.robot, link.robot, sizeof f->stats.robot);
   f->stats.track = f->tracker.stats;
   f->stats.lost_messages = vs_tap_lost(&f->tap);
+  f->stats.camera_lost = f->eyes.lost;
+  f->stats.camera_reopened = f->eyes.reopened;
+  f->stats.player_failures = 0;
+  for (int i = 0; i < 2 && f->control[i]; i++)
+    f->stats.player_failures += vs_player_failures(vs_control_player(f->control[i]));
+  memcpy(f->stats.entered, f->safety.entered, sizeof f->stats.entered);
   *out = f->stats;
 }
 
 const vs_tracker *vs_field_tracker(const vs_field *f) { return &f->tracker; }
-const vs_camera_info *vs_field_camera(const vs_field *f) { return vs_camera_about(f->camera); }
+const vs_camera_info *vs_field_camera(const vs_field *f) { return &f->eyes.info; }

@@ -22,7 +22,7 @@ struct vs_player {
   vs_plugin *plugin;
   vs_player_process *process; // all of the above live there
   vs_player_about about;      // what it said of itself
-  void *state; // api->state_size bytes
+  void *state;                // api->state_size bytes
   bool started;
 };
 

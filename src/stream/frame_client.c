@@ -13,14 +13,17 @@
 #include "vsss/frame_stream.h"
 #include "vsss/image.h"
 
-#define HELLO_MS 2000 // how long the server may take to answer
-#define FRAME_MS 1000 // how long the rest of a begun picture may take
+#define HELLO_MS 1000 // how long the server may take to say its hello
 
 typedef struct client {
   char path[108];
   int fd, width, height;
-  size_t bytes;
+  size_t bytes; // of a picture
   uint8_t *bgr, *grey;
+  // The picture that is arriving: however slowly it comes, nobody waits for the rest of it.
+  vs_wire_frame head;
+  uint8_t *arriving;
+  size_t have; // bytes of head and picture
 } client;
 
 void vs_rig_default_path(const char *file, char *out, unsigned long out_size) {
@@ -33,22 +36,21 @@ void vs_rig_default_path(const char *file, char *out, unsigned long out_size) {
 
 typedef enum arrival { ARRIVED, NOTHING, GONE } arrival;
 
-// Reads size bytes. NOTHING: none came within timeout_ms; once the first is there the rest has FRAME_MS.
-static arrival receive(int fd, void *out, size_t size, int timeout_ms) {
-  uint8_t *bytes = out;
-  size_t have = 0;
-  while (have < size) {
-    struct pollfd wait = {.fd = fd, .events = POLLIN};
-    int ready = poll(&wait, 1, have ? FRAME_MS : timeout_ms);
-    if (ready < 0 && errno == EINTR) {
-      if (have) continue;
-      return NOTHING; // let the caller see its signal
-    }
-    if (ready == 0) return have ? GONE : NOTHING;
-    ssize_t n = recv(fd, bytes + have, size - have, 0);
-    if (n < 0 && errno == EINTR) continue;
+// Waits until the socket can be read; NOTHING: not by until_us, or a signal came and the caller shall see it.
+static arrival await(int fd, int64_t until_us) {
+  int64_t left_us = until_us - vs_clock_monotonic_us();
+  struct pollfd wait = {.fd = fd, .events = POLLIN};
+  return poll(&wait, 1, left_us > 0 ? (int)((left_us + 999) / 1000) : 0) > 0 ? ARRIVED : NOTHING;
+}
+
+// Reads on from *have to size.
+static arrival receive(int fd, void *out, size_t size, size_t *have, int64_t until_us) {
+  while (*have < size) {
+    if (await(fd, until_us) == NOTHING) return NOTHING;
+    ssize_t n = recv(fd, (uint8_t *)out + *have, size - *have, MSG_DONTWAIT);
+    if (n < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (n <= 0) return GONE;
-    have += (size_t)n;
+    *have += (size_t)n;
   }
   return ARRIVED;
 }
@@ -58,6 +60,7 @@ static void close_client(void *handle) {
   if (c->fd >= 0) close(c->fd);
   free(c->bgr);
   free(c->grey);
+  free(c->arriving);
   free(c);
 }
 
@@ -68,7 +71,8 @@ static vs_status shake_hands(client *c, vs_camera_info *info, vs_error *err) {
   if (c->fd < 0 || connect(c->fd, (struct sockaddr *)&address, sizeof address))
     return vs_fail(err, VS_FAIL, "rig:%s: %s; start it with 'vsss rig'", c->path, strerror(errno));
   vs_wire_hello hello;
-  arrival got = receive(c->fd, &hello, sizeof hello, HELLO_MS);
+  size_t have = 0;
+  arrival got = receive(c->fd, &hello, sizeof hello, &have, vs_clock_monotonic_us() + 1000 * HELLO_MS);
   if (got == NOTHING) return vs_fail(err, VS_FAIL, "rig:%s: busy with another viewer", c->path);
   if (got == GONE || hello.magic != VS_WIRE_HELLO || hello.width_px < 1 || hello.width_px > 8192 ||
       hello.height_px < 1 || hello.height_px > 8192)
@@ -78,7 +82,8 @@ static vs_status shake_hands(client *c, vs_camera_info *info, vs_error *err) {
   c->bytes = (size_t)c->width * (size_t)c->height * 3;
   c->bgr = malloc(c->bytes);
   c->grey = malloc(c->bytes / 3);
-  if (!c->bgr || !c->grey) return vs_fail(err, VS_FAIL, "out of memory");
+  c->arriving = malloc(c->bytes);
+  if (!c->bgr || !c->grey || !c->arriving) return vs_fail(err, VS_FAIL, "out of memory");
   *info = (vs_camera_info){.width = c->width, .height = c->height, .fps = hello.fps};
   snprintf(info->name, sizeof info->name, "rig");
   return VS_OK;
@@ -111,18 +116,34 @@ static void swap_red_and_blue(uint8_t *pixel, size_t pixels) {
   }
 }
 
+// Takes in what is there of the next picture.
+static arrival next_picture(client *c, int64_t until_us) {
+  size_t head = c->have < sizeof c->head ? c->have : sizeof c->head;
+  arrival a = receive(c->fd, &c->head, sizeof c->head, &head, until_us);
+  if (c->have < sizeof c->head) c->have = head;
+  if (a != ARRIVED) return a;
+  if (c->head.magic != VS_WIRE_FRAME) return GONE;
+  size_t pixels = c->have - sizeof c->head;
+  a = receive(c->fd, c->arriving, c->bytes, &pixels, until_us);
+  c->have = sizeof c->head + pixels;
+  return a;
+}
+
 static vs_status read_client(void *handle, int timeout_ms, vs_frame *out, vs_camera_got *got, vs_error *err) {
   client *c = handle;
-  vs_wire_frame head;
   // More than one may wait: the newest counts.
   bool have = false;
+  int64_t until_us = vs_clock_monotonic_us() + 1000LL * timeout_ms;
   for (;;) {
-    arrival a = receive(c->fd, &head, sizeof head, have ? 0 : timeout_ms);
+    arrival a = next_picture(c, have ? 0 : until_us);
     if (a == NOTHING) break;
-    if (a == ARRIVED) a = receive(c->fd, c->bgr, c->bytes, FRAME_MS);
-    if (a == GONE || head.magic != VS_WIRE_FRAME) return vs_fail(err, VS_FAIL, "rig:%s: the rig is gone", c->path);
-    out->capture_us = head.capture_us;
-    out->seq = head.seq;
+    if (a == GONE) return vs_fail(err, VS_FAIL, "rig:%s: the rig is gone", c->path);
+    uint8_t *whole = c->arriving;
+    c->arriving = c->bgr;
+    c->bgr = whole;
+    c->have = 0;
+    out->capture_us = c->head.capture_us;
+    out->seq = c->head.seq;
     have = true;
   }
   *got = have ? VS_CAMERA_FRAME : VS_CAMERA_TIMEOUT;

@@ -11,6 +11,8 @@
 #include "frame_wire.h"
 #include "vsss/frame_stream.h"
 
+#define LOOK_NS 50000000 // between looks for a client that left while there was no picture: the next one waits for it
+
 struct vs_frame_server {
   char path[108];
   vs_wire_hello hello;
@@ -46,7 +48,9 @@ static bool take(vs_frame_server *s, int client, vs_wire_frame *head) {
   while (!s->fresh && !s->stop) {
     struct timespec until;
     clock_gettime(CLOCK_REALTIME, &until);
-    until.tv_sec += 1;
+    until.tv_nsec += LOOK_NS;
+    until.tv_sec += until.tv_nsec / 1000000000;
+    until.tv_nsec %= 1000000000;
     pthread_cond_timedwait(&s->put, &s->lock, &until);
     char byte;
     if (!s->fresh && recv(client, &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0) break;

@@ -19,6 +19,12 @@ static vs_robot robot_rotate_pi(const vs_robot *robot) {
   return turned;
 }
 
+vs_pose vs_world_parked(vs_team team, int robot) {
+  static const double y_m[VS_TEAM_SIZE] = {0.60, -0.60, 0.48};
+  vs_pose blue = {-0.70, y_m[robot], 0};
+  return team == VS_BLUE ? blue : vs_pose_rotate_pi(blue);
+}
+
 void vs_world_for_team(const vs_world *absolute, vs_team team, vs_world *view) {
   if (team == VS_BLUE) {
     if (view != absolute) *view = *absolute;

@@ -12,7 +12,10 @@ static vs_safety_state expected_state(vs_safety_state from, unsigned c) {
   if (!(c & VS_SAFETY_IF_ARMED)) return VS_SAFETY_UNARMED;
   if (from == VS_SAFETY_FAULT || !(c & VS_SAFETY_IF_SANE)) return VS_SAFETY_FAULT;
   if (c & VS_SAFETY_IF_HALTED) return VS_SAFETY_HALTED;
+  if (!(c & VS_SAFETY_IF_CAMERA)) return VS_SAFETY_DARK;
   if (!(c & VS_SAFETY_IF_SEEN)) return VS_SAFETY_BLIND;
+  if (!(c & VS_SAFETY_IF_BALL)) return VS_SAFETY_NO_BALL;
+  if (!(c & VS_SAFETY_IF_PLAYER)) return VS_SAFETY_MINDLESS;
   return c & VS_SAFETY_IF_FRESH ? VS_SAFETY_RUNNING : VS_SAFETY_STALE;
 }
 
@@ -20,14 +23,14 @@ static void every_state_under_every_condition_goes_where_it_should(void **state)
   (void)state;
   int running = 0;
   for (int from = 0; from < VS_SAFETY_STATES; from++)
-    for (unsigned c = 0; c < 64; c++) {
+    for (unsigned c = 0; c < VS_SAFETY_CONDITIONS; c++) {
       vs_safety_state to = vs_safety_next((vs_safety_state)from, c);
       if (to != expected_state((vs_safety_state)from, c))
         fail_msg("%s under %#x goes to %s", vs_safety_name((vs_safety_state)from), c, vs_safety_name(to));
       running += to == VS_SAFETY_RUNNING ? 1 : 0;
     }
-  // Of 448 cases commands go out in one a state: armed, sane, seen, fresh, not halted, no shutdown; never from FAULT or
-  // SHUTDOWN.
+  // Of 5,120 cases commands go out in one a state: armed, sane, camera, seen, ball, player, fresh, not halted, no
+  // shutdown; never from FAULT or SHUTDOWN.
   assert_int_equal(running, VS_SAFETY_STATES - 2);
 }
 
@@ -92,6 +95,9 @@ static void each_mishap_stops_the_robots(void **state) {
       {"end", (in = base, in.referee = VS_EVENT_END, in), VS_SAFETY_HALTED, true},
       {"all own robots lost", (in = base, in.world = &lost, in), VS_SAFETY_BLIND, true},
       {"no world", (in = base, in.world = NULL, in), VS_SAFETY_BLIND, true},
+      {"camera gone", (in = base, in.no_camera = true, in), VS_SAFETY_DARK, true},
+      {"ball lost", (in = base, in.no_ball = true, in), VS_SAFETY_NO_BALL, true},
+      {"player failed", (in = base, in.no_player = true, in), VS_SAFETY_MINDLESS, true},
       {"stale", (in = base, in.command_us = in.now_us - 150001, in), VS_SAFETY_STALE, true},
       {"no command", (in = base, in.command_us = 0, in), VS_SAFETY_STALE, true},
       {"from the future", (in = base, in.command_us = in.now_us + 1, in), VS_SAFETY_STALE, true},

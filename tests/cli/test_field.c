@@ -191,29 +191,6 @@ static void interrupt_stops_the_robots_prints_the_latencies_and_exits_0(void **s
   vs_pty_free(pty);
 }
 
-static void a_camera_that_dies_stops_the_robots(void **state) {
-  (void)state;
-  vs_frame_server *camera = still_camera();
-  vs_pty *pty;
-  assert_ok(vs_pty_new(&pty, err));
-  char arguments[512];
-  snprintf(arguments, sizeof arguments, "field --no-lcm --policy random: --camera rig:%s/still --radio %s", folder,
-           vs_pty_path(pty));
-  pid_t field = vsss_start(in_folder("field.log"), arguments);
-  vs_radio_decoder decoder = {0};
-  heard h = {0};
-  for (int i = 0; i < 900 && h.frames - h.stops < 20; i++) show_and_listen(camera, pty, &decoder, 1, &h);
-  assert_true(h.frames - h.stops >= 20);
-  memset(&h, 0, sizeof h);
-  show_and_listen(NULL, pty, &decoder, 20,
-                  &h); // frozen: no picture any more, for 0.7 s
-  assert_true(h.trailing_stops >= 5);
-  vs_frame_server_free(camera); // gone
-  assert_int_equal(vsss_wait(field, 20), 1);
-  assert_non_null(strstr(read_text(in_folder("field.log")), "the rig is gone"));
-  vs_pty_free(pty);
-}
-
 static void without_a_radio_it_says_that_it_is_a_dry_run(void **state) {
   (void)state;
   vs_frame_server *camera = still_camera();
@@ -271,7 +248,6 @@ int main(void) {
       cmocka_unit_test(bad_input_is_named_in_one_line),
       cmocka_unit_test(without_a_radio_it_says_that_it_is_a_dry_run),
       cmocka_unit_test(interrupt_stops_the_robots_prints_the_latencies_and_exits_0),
-      cmocka_unit_test(a_camera_that_dies_stops_the_robots),
       cmocka_unit_test(field_plays_in_the_rig_with_true_poses_and_fresh_frames),
   };
   return cmocka_run_group_tests_name("cli/field", tests, make_folder, remove_folder);

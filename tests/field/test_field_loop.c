@@ -17,7 +17,7 @@ static struct {
   int64_t not_before_us; // a picture is there from then on
   bool end;
 } fake;
-static uint8_t picture[3 * W * H], grey[W * H]; // grey in grey: red and blue need no swap
+static uint8_t picture[3 * W * H], grey[W * H];
 
 static vs_status open_fake(const char *rest, const vs_camera_def *def, void **handle, vs_camera_info *info,
                            vs_error *err) {
@@ -49,6 +49,11 @@ static int register_fake(void **state) {
   static const vs_camera_api api = {"fake", "fake: for tests", open_fake, read_fake, close_fake};
   vs_camera_register(&api);
   paint_tagged_picture(picture);
+  for (int i = 0; i < W * H; i++) { // to blue, green, red
+    uint8_t red = picture[3 * i];
+    picture[3 * i] = picture[3 * i + 2];
+    picture[3 * i + 2] = red;
+  }
   vs_image_grey(picture, 3 * W, W, H, grey, W);
   return 0;
 }

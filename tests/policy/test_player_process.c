@@ -39,8 +39,11 @@ static void one_that_fails_is_named_and_started_again(void **state) {
   (void)state;
   static const struct {
     const char *options, *said;
-  } row[] = {{"?step=segv", "SIGSEGV"}, {"?step=abort", "SIGABRT"},     {"?step=overflow", "stack overflow"},
-             {"?step=nan", "nan rad/s"}, {"?step=hang", "no answer within 300 ms"}};
+  } row[] = {{"?step=segv", "SIGSEGV"},
+             {"?step=abort", "SIGABRT"},
+             {"?step=overflow", "stack overflow"},
+             {"?step=nan", "nan rad/s"},
+             {"?step=hang", "no answer within 300 ms"}};
   for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
     vs_player *player = isolated(row[i].options);
     vs_error why = {0};
@@ -69,7 +72,8 @@ static void one_that_is_killed_is_started_again(void **state) {
   snprintf(command, sizeof command, "for k in $(pgrep -P %ld); do pkill -KILL -P $k; done; true", (long)getpid());
   assert_int_equal(system(command), 0);
   vs_error why = {0};
-  for (int i = 0; i < 1000 && step(player, &left, &why) == VS_OK; i++) vs_clock_sleep_until_us(vs_clock_monotonic_us() + 2000);
+  for (int i = 0; i < 1000 && step(player, &left, &why) == VS_OK; i++)
+    vs_clock_sleep_until_us(vs_clock_monotonic_us() + 2000);
   assert_non_null(strstr(why.text, "signal 9"));
   wait_for_life(player, &left);
   assert_int_equal(vs_player_failures(player), 1);

@@ -65,6 +65,8 @@ static void a_tag_gives_place_and_heading_of_its_robot_corrected_for_height(void
     assert_true(w.robot[VS_BLUE][1].valid);
     assert_false(w.robot[VS_BLUE][0].valid);
     assert_false(w.robot[VS_YELLOW][0].valid);
+    assert_near(w.robot[VS_YELLOW][0].pose.x_m, 0.70, 1e-12); // never seen: in its own corner
+    assert_near(w.robot[VS_BLUE][0].pose.x_m, -0.70, 1e-12);
     assert_false(w.ball.valid);
     assert_near(w.robot[VS_BLUE][1].pose.x_m, 0.70, 1e-9);
     assert_near(w.robot[VS_BLUE][1].pose.y_m, -0.60, 1e-9);

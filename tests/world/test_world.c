@@ -92,8 +92,20 @@ static void hash_sees_every_number(void **state) {
   assert_int_not_equal(vs_world_hash(VS_HASH_START, &w), before);
 }
 
+static void robots_that_nobody_saw_stand_in_their_own_corners(void **state) {
+  (void)state;
+  for (int team = 0; team < VS_TEAMS; team++)
+    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+      vs_pose p = vs_world_parked((vs_team)team, i);
+      assert_near(p.x_m, team == VS_BLUE ? -0.70 : 0.70, 1e-12);
+      assert_true(fabs(p.y_m) > 0.40 && fabs(p.y_m) < 0.62); // beside the goal area (0.35) and inside the wall (0.65)
+      for (int k = 0; k < i; k++) assert_true(fabs(p.y_m - vs_world_parked((vs_team)team, k).y_m) > 0.11);
+    }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(robots_that_nobody_saw_stand_in_their_own_corners),
       cmocka_unit_test(yellow_sees_itself_first_and_the_field_turned_by_pi),
       cmocka_unit_test(seeing_as_yellow_twice_gives_the_world_back),
       cmocka_unit_test(blue_sees_the_absolute_world),
