@@ -93,7 +93,7 @@ VSSS_API void vs_game_for_team(const vs_game *absolute, vs_team team, vs_game *v
 
 // Where a robot that nobody has seen yet is taken to stand (absolute frame): in a corner of its own half beside its goal
 // area, out of play and inside what a policy knows. A team that plays alone meets nobody there.
-vs_pose vs_world_parked(vs_team team, int robot);
+VSSS_API vs_pose vs_world_parked(vs_team team, int robot);
 
 // All numbers finite and within 1 m outside the field; names the first that is not.
 VSSS_API vs_status vs_world_check(const vs_world *world, vs_error *err);

@@ -9,6 +9,7 @@
 #include "tap.h"
 #include "vsss/clock.h"
 #include "vsss/control.h"
+#include "vsss/isolate.h"
 #include "vsss/sender.h"
 
 #define WAIT_MS 100 // for a frame; so that a dead camera does not make us deaf to Ctrl-C

@@ -1,6 +1,7 @@
-// ppoll, close_range
-#define _GNU_SOURCE
-#include "player_process.h"
+// A player in a process of its own. A keeper, forked while this process is still simple, forks the worker that opens and
+// runs the player, and the next one when that ends.
+#define _GNU_SOURCE // ppoll, close_range
+#include "vsss/isolate.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -14,6 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "policy_internal.h"
 #include "vsss/clock.h"
 
 #define OPEN_MS          30000 // a large model on a slow disk
@@ -43,7 +45,7 @@ typedef struct reply {
   float action[VS_TEAM_SIZE * VS_ACTION_SIZE];
 } reply;
 
-struct vs_player_process {
+typedef struct vs_player_process {
   char *uri;
   int talk; // packets with the worker, whichever lives
   int keep; // to the keeper: 'k' ends the worker; from it: the wait status of each that ended
@@ -57,7 +59,7 @@ struct vs_player_process {
   int64_t failures;
   request request;
   reply reply;
-};
+} vs_player_process;
 
 // ---- the worker
 
@@ -251,7 +253,8 @@ static vs_status revive(vs_player_process *p, vs_error *err) {
   return call(p, RESET, err);
 }
 
-vs_status vs_player_process_reset(vs_player_process *p, uint64_t seed, vs_error *err) {
+static vs_status reset(void *handle, uint64_t seed, vs_error *err) {
+  vs_player_process *p = handle;
   p->seed = seed;
   vs_status s = revive(p, err);
   if (s != VS_OK) return s;
@@ -259,8 +262,9 @@ vs_status vs_player_process_reset(vs_player_process *p, uint64_t seed, vs_error 
   return call(p, RESET, err);
 }
 
-vs_status vs_player_process_step(vs_player_process *p, const vs_world *view, const vs_game *game, double dt_s,
-                                 vs_wheels out[VS_TEAM_SIZE], vs_error *err) {
+static vs_status step(void *handle, const vs_world *view, const vs_game *game, double dt_s, vs_wheels out[VS_TEAM_SIZE],
+                      vs_error *err) {
+  vs_player_process *p = handle;
   vs_status s = revive(p, err);
   if (s != VS_OK) return s;
   p->request.view = *view;
@@ -271,13 +275,26 @@ vs_status vs_player_process_step(vs_player_process *p, const vs_world *view, con
   return s;
 }
 
-vs_status vs_player_process_act(vs_player_process *p, const float *obs, float *action, vs_error *err) {
+static vs_status act(void *handle, const float *obs, float *action, vs_error *err) {
+  vs_player_process *p = handle;
   vs_status s = revive(p, err);
   if (s != VS_OK) return s;
   memcpy(p->request.obs, obs, sizeof p->request.obs);
   s = call(p, ACT, err);
   if (s == VS_OK) memcpy(action, p->reply.action, sizeof p->reply.action);
   return s;
+}
+
+static int64_t failures(const void *handle) { return ((const vs_player_process *)handle)->failures; }
+
+// The keeper ends its worker when it hears nothing of us any more.
+static void close_process(void *handle) {
+  vs_player_process *p = handle;
+  if (p->talk >= 0) close(p->talk);
+  if (p->keep >= 0) close(p->keep);
+  if (p->keeper > 0) waitpid(p->keeper, NULL, 0);
+  free(p->uri);
+  free(p);
 }
 
 static vs_status start_keeper(vs_player_process *p, vs_error *err) {
@@ -298,34 +315,18 @@ static vs_status start_keeper(vs_player_process *p, vs_error *err) {
   return p->keeper > 0 ? VS_OK : vs_fail(err, VS_FAIL, "player %s: no process for it: %s", p->uri, strerror(errno));
 }
 
-vs_status vs_player_process_open(const char *uri, int patience_ms, vs_player_process **out, vs_player_about *about,
-                                 vs_error *err) {
+vs_status vs_player_open_isolated(const char *uri, int patience_ms, vs_player **out, vs_error *err) {
+  static const vs_player_remote calls = {reset, step, act, failures, close_process};
   *out = NULL;
   vs_player_process *p = calloc(1, sizeof *p);
-  if (!p) return vs_fail(err, VS_FAIL, "out of memory");
+  if (!p) return vs_fail(err, VS_FAIL, "%s: out of memory", uri);
   p->talk = p->keep = -1;
   p->patience_ms = patience_ms;
   p->uri = strdup(uri);
-  vs_status s = p->uri ? start_keeper(p, err) : vs_fail(err, VS_FAIL, "out of memory");
+  vs_status s = p->uri ? start_keeper(p, err) : vs_fail(err, VS_FAIL, "%s: out of memory", uri);
   if (s == VS_OK) s = await(p, HELLO, OPEN_MS, err);
-  if (s != VS_OK) {
-    vs_player_process_close(p);
-    return s;
-  }
-  p->ready = true;
-  *about = p->reply.about;
-  *out = p;
-  return VS_OK;
+  p->ready = s == VS_OK;
+  if (s == VS_OK) s = vs_player_of_remote(uri, &calls, p, &p->reply.about, out, err);
+  if (s != VS_OK) close_process(p);
+  return s;
 }
-
-// The keeper ends its worker when it hears nothing of us any more.
-void vs_player_process_close(vs_player_process *p) {
-  if (!p) return;
-  if (p->talk >= 0) close(p->talk);
-  if (p->keep >= 0) close(p->keep);
-  if (p->keeper > 0) waitpid(p->keeper, NULL, 0);
-  free(p->uri);
-  free(p);
-}
-
-int64_t vs_player_process_failures(const vs_player_process *p) { return p->failures; }

@@ -7,9 +7,9 @@
 #include <string.h>
 #include <strings.h>
 
-#include "player_process.h"
 #include "policy_internal.h"
 #include "vsss/field.h"
+#include "vsss/isolate.h"
 
 #define MAX_PROVIDERS 8
 
@@ -20,9 +20,10 @@ struct vs_player {
   const char *(*failure)(const void *state); // of a registered player, or NULL
   vs_obs_player *learned;
   vs_plugin *plugin;
-  vs_player_process *process; // all of the above live there
-  vs_player_about about;      // what it said of itself
-  void *state;                // api->state_size bytes
+  const vs_player_remote *remote; // all of the above live elsewhere; handle says where
+  void *handle;
+  vs_player_about about; // what it said of itself
+  void *state;           // api->state_size bytes
   bool started;
 };
 
@@ -157,23 +158,24 @@ vs_status vs_player_open(const char *uri, vs_player **out, vs_error *err) {
   return VS_OK;
 }
 
-vs_status vs_player_open_isolated(const char *uri, int patience_ms, vs_player **out, vs_error *err) {
+vs_status vs_player_of_remote(const char *uri, const vs_player_remote *calls, void *handle,
+                              const vs_player_about *about, vs_player **out, vs_error *err) {
   *out = NULL;
   vs_player *player = calloc(1, sizeof *player);
-  if (!player) return vs_fail(err, VS_FAIL, "%s: out of memory", uri);
-  player->uri = copy_text(uri);
-  vs_status s = player->uri ? vs_player_process_open(uri, patience_ms, &player->process, &player->about, err)
-                            : vs_fail(err, VS_FAIL, "%s: out of memory", uri);
-  if (s != VS_OK) {
-    vs_player_close(player);
-    return s;
+  if (player) player->uri = copy_text(uri);
+  if (!player || !player->uri) {
+    free(player);
+    return vs_fail(err, VS_FAIL, "%s: out of memory", uri);
   }
+  player->remote = calls;
+  player->handle = handle;
+  player->about = *about;
   *out = player;
   return VS_OK;
 }
 
 int64_t vs_player_failures(const vs_player *player) {
-  return player->process ? vs_player_process_failures(player->process) : 0;
+  return player->remote ? player->remote->failures(player->handle) : 0;
 }
 
 static void end_match(vs_player *player) {
@@ -187,7 +189,7 @@ static void end_match(vs_player *player) {
 
 void vs_player_close(vs_player *player) {
   if (!player) return;
-  vs_player_process_close(player->process);
+  if (player->remote) player->remote->close(player->handle);
   end_match(player);
   if (player->plugin) vs_plugin_close(player->plugin);
   if (player->learned) player->learned->close(player->learned);
@@ -198,24 +200,24 @@ void vs_player_close(vs_player *player) {
 }
 
 vs_player_sees vs_player_kind(const vs_player *player) {
-  if (player->process) return player->about.sees;
+  if (player->remote) return player->about.sees;
   return player->api ? VS_SEES_WORLD : VS_SEES_OBSERVATION;
 }
 
 double vs_player_rate_hz(const vs_player *player) {
-  if (player->process) return player->about.rate_hz;
+  if (player->remote) return player->about.rate_hz;
   return player->api ? player->api->rate_hz : VS_DECISION_HZ;
 }
 
 const char *vs_player_uri(const vs_player *player) { return player->uri; }
 
 const char *vs_player_name(const vs_player *player) {
-  if (player->process) return player->about.name;
+  if (player->remote) return player->about.name;
   return player->api ? player->api->name : player->learned->name;
 }
 
 vs_status vs_player_reset(vs_player *player, uint64_t seed, vs_error *err) {
-  if (player->process) return vs_player_process_reset(player->process, seed, err);
+  if (player->remote) return player->remote->reset(player->handle, seed, err);
   if (!player->api) return VS_OK;
   end_match(player);
   vs_status status = player->plugin ? vs_plugin_init(player->plugin, player->state, seed, player->options, err)
@@ -236,7 +238,7 @@ vs_status vs_player_step(vs_player *player, const vs_world *view, const vs_game 
                          vs_wheels out[VS_TEAM_SIZE], vs_error *err) {
   if (vs_player_kind(player) != VS_SEES_WORLD)
     return vs_fail(err, VS_FAIL, "player %s acts on observations, not on a world", player->uri);
-  if (player->process) return vs_player_process_step(player->process, view, game, dt_s, out, err);
+  if (player->remote) return player->remote->step(player->handle, view, game, dt_s, out, err);
   if (player->plugin) {
     vs_status status = vs_plugin_step(player->plugin, player->state, view, game, dt_s, out, err);
     if (status != VS_OK) return status;
@@ -254,7 +256,7 @@ vs_status vs_player_step(vs_player *player, const vs_world *view, const vs_game 
 }
 
 static vs_status act_team(vs_player *player, int first_row, const float *obs, float *action, vs_error *err) {
-  if (player->process) return vs_player_process_act(player->process, obs, action, err);
+  if (player->remote) return player->remote->act(player->handle, obs, action, err);
   vs_status status = player->learned->act(player->learned, obs, VS_TEAM_SIZE, action, err);
   if (status != VS_OK) return status;
   for (int i = 0; i < VS_TEAM_SIZE * VS_ACTION_SIZE; i++) {
@@ -286,7 +288,7 @@ vs_status vs_player_act(vs_player *player, const float *obs, int rows, float *ac
 
 // A memoryless player still answers 1, since 0 says "cannot".
 size_t vs_player_state_size(const vs_player *player) {
-  if (player->process) return 0;
+  if (player->remote) return 0;
   return player->api ? player->api->state_size : 1;
 }
 

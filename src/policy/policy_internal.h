@@ -20,6 +20,24 @@ struct vs_obs_player {
 // "onnx:", a file name, perhaps with "?options"; no name: the policy that comes with vsss.
 vs_status vs_policy_onnx_open(const char *rest, vs_obs_player **out, vs_error *err);
 
+// A player elsewhere, of which this process holds only a handle (player_process.c). Calls as in policy.h.
+typedef struct vs_player_about {
+  vs_player_sees sees;
+  double rate_hz;
+  char name[128];
+} vs_player_about;
+typedef struct vs_player_remote {
+  vs_status (*reset)(void *handle, uint64_t seed, vs_error *err);
+  vs_status (*step)(void *handle, const vs_world *view, const vs_game *game, double dt_s, vs_wheels out[VS_TEAM_SIZE],
+                    vs_error *err);
+  vs_status (*act)(void *handle, const float *obs, float *action, vs_error *err); // VS_TEAM_SIZE rows
+  int64_t (*failures)(const void *handle);
+  void (*close)(void *handle);
+} vs_player_remote;
+// Takes handle over where it succeeds.
+vs_status vs_player_of_remote(const char *uri, const vs_player_remote *calls, void *handle,
+                              const vs_player_about *about, vs_player **out, vs_error *err);
+
 // Built-in players.
 extern const vsss_player_api vs_player_emc, vs_player_inf, vs_player_emc22, vs_player_random, vs_player_zero;
 

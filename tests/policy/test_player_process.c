@@ -1,7 +1,7 @@
 // src/policy/player_process.c
 #include "policy/plugins/compile.h"
 #include "vsss/clock.h"
-#include "vsss/policy.h"
+#include "vsss/isolate.h"
 
 enum { PATIENCE_MS = 300 };
 
