@@ -53,7 +53,7 @@ help:
 	@echo "make asan      the tests under the address and undefined-behaviour sanitizers; make tsan: threads"
 	@echo "make lint      layers, formatting, banned functions, static analysis"
 	@echo "make bench     the figures: 'bench NAME VALUE UNIT', medians"
-	@echo "make bench-peers  beside the benchmarks of peer projects; INSTALL=1 installs those"
+	@echo "make bench-peers  beside the benchmarks of peer projects; INSTALL=1 installs those, N=python: only the Python ones"
 	@echo "make wheel     the Python package, build/dist/*.whl"
 	@echo "make install   into PREFIX ($(PREFIX)), libraries into LIBDIR ($(LIBDIR)); make uninstall"
 	@echo "make library   build/plain/libvsss.so, the C library for other programs; make clean"
@@ -126,7 +126,7 @@ bench: all $(BENCH_BIN) $(B)/libvsss.so
 
 # Peer projects' benchmarks beside ours, where they are installed (INSTALL=1 installs them).
 bench-peers: all $(BENCH_BIN) $(B)/libvsss.so
-	@sh tests/bench/peers.sh $(B) $(if $(INSTALL),--install)
+	@sh tests/bench/peers.sh $(B) $(if $(INSTALL),--install,$(if $(filter python,$(N)),--python))
 
 # The Python package for every Python, build/dist/*.whl.
 wheel:

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Runs the benchmarks of peer projects beside ours, in one run on one core, and prints ours, theirs and the ratio.
-#   peers.sh BUILD_FOLDER [--install]
+#   peers.sh BUILD_FOLDER [--install | --python]     --python: only what the Python package is compared with
 # VSSS_PEERS          folder of the peers' benchmark scripts (default ../shared/tools/peers beside the checkout)
 # VSSS_PEERS_PYTHONS  folder of one Python environment per peer: rsim psim rsoccer sb3 envpool
 #                     (default build/peers; --install makes them with python3.10, 3.11 and 3.12 where those exist)
@@ -53,7 +53,7 @@ run() {
 }
 
 # ours: "bench NAME VALUE UNIT" lines of our own benchmarks, run now on the same core.
-ours=$(for what in env learn; do
+ours=$([ "${2:-}" = --python ] || for what in env learn; do
   [ -x "$folder/tests/bench/bench_$what" ] && OPENBLAS_NUM_THREADS=1 taskset -c 1 "$folder/tests/bench/bench_$what"
 done)
 our() { printf '%s\n' "$ours" | awk -v n="$1" '$1 == "bench" && $2 == n {print $3; exit}'; }
@@ -65,30 +65,33 @@ compare() { # label, our value, their value, unit
     "$(echo "$2 $3" | awk '{print $1 / $2}')" "$2" "$3" "$4"
 }
 
-planar=$(our env_planar_per_core)
-contact=$(our env_contact_per_core)
-learner=$(our learner_transitions_per_s_1_core)
-learner_fp32=$(our learner_fp32_transitions_per_s_1_core)
-whole=$(our train_transitions_per_s_1_core)
+compare_core() {
+  planar=$(our env_planar_per_core)
+  contact=$(our env_contact_per_core)
+  learner=$(our learner_transitions_per_s_1_core)
+  learner_fp32=$(our learner_fp32_transitions_per_s_1_core)
+  whole=$(our train_transitions_per_s_1_core)
 
-rsim=$(run rsim bench_rsim_raw.py sim_s_per_wall_s --seconds 8)
-rsim_hold=$(run rsim bench_rsim_raw.py sim_s_per_wall_s --seconds 8 --hold 40)
-psim=$(run psim bench_psim.py sim_s_per_wall_s --env raw --seconds 8)
-psim_zoo=$(run psim bench_psim.py sim_s_per_wall_s --env zoo --seconds 8)
-rsoccer=$(run rsoccer bench_rsoccer_gym.py sim_s_per_wall_s --api gym --seconds 8)
-envpool=$(run envpool bench_envpool_soccer.py sim_s_per_wall_s)
-compare planar/rsim_raw "$planar" "$rsim" "simulated s/s"
-compare planar/rsim_raw_with_contacts "$planar" "$rsim_hold" "simulated s/s"
-compare contact/rsim_raw "$contact" "$rsim" "simulated s/s"
-compare contact/rsim_raw_with_contacts "$contact" "$rsim_hold" "simulated s/s"
-compare planar/rsoccer_environment "$planar" "$rsoccer" "simulated s/s"
-compare planar/psim_raw_2d "$planar" "$psim" "simulated s/s"
-compare planar/psim_environment "$planar" "$psim_zoo" "simulated s/s"
-compare planar/envpool_soccer "$planar" "$envpool" "simulated s/s"
-torch=$(run sb3 bench_torch_ppo_learner.py transitions_per_s_at_epochs)
-compare learner_fp32/torch_learner "$learner_fp32" "$torch" "transitions/s per core"
-compare learner/torch_learner "$learner" "$torch" "transitions/s per core; bf16 where the processor has it"
-compare train/envpool_soccer_torch_ppo "$whole" "$(run envpool bench_envpool_soccer_ppo.py transitions_per_s --seconds 30)" "transitions/s per core"
+  rsim=$(run rsim bench_rsim_raw.py sim_s_per_wall_s --seconds 8)
+  rsim_hold=$(run rsim bench_rsim_raw.py sim_s_per_wall_s --seconds 8 --hold 40)
+  psim=$(run psim bench_psim.py sim_s_per_wall_s --env raw --seconds 8)
+  psim_zoo=$(run psim bench_psim.py sim_s_per_wall_s --env zoo --seconds 8)
+  rsoccer=$(run rsoccer bench_rsoccer_gym.py sim_s_per_wall_s --api gym --seconds 8)
+  envpool=$(run envpool bench_envpool_soccer.py sim_s_per_wall_s)
+  compare planar/rsim_raw "$planar" "$rsim" "simulated s/s"
+  compare planar/rsim_raw_with_contacts "$planar" "$rsim_hold" "simulated s/s"
+  compare contact/rsim_raw "$contact" "$rsim" "simulated s/s"
+  compare contact/rsim_raw_with_contacts "$contact" "$rsim_hold" "simulated s/s"
+  compare planar/rsoccer_environment "$planar" "$rsoccer" "simulated s/s"
+  compare planar/psim_raw_2d "$planar" "$psim" "simulated s/s"
+  compare planar/psim_environment "$planar" "$psim_zoo" "simulated s/s"
+  compare planar/envpool_soccer "$planar" "$envpool" "simulated s/s"
+  torch=$(run sb3 bench_torch_ppo_learner.py transitions_per_s_at_epochs)
+  compare learner_fp32/torch_learner "$learner_fp32" "$torch" "transitions/s per core"
+  compare learner/torch_learner "$learner" "$torch" "transitions/s per core; bf16 where the processor has it"
+  compare train/envpool_soccer_torch_ppo "$whole" "$(run envpool bench_envpool_soccer_ppo.py transitions_per_s --seconds 30)" "transitions/s per core"
+}
+
 # The Python package on the same core: environments one beside one, and PPO of the same library on both.
 ours_python() { # NAME of the environment of a peer, what...
   name=$1
@@ -97,14 +100,19 @@ ours_python() { # NAME of the environment of a peer, what...
   PYTHONPATH=$PWD/deploy/python VSSS_LIBRARY=$PWD/$folder/libvsss.so taskset -c 1 "$pythons/$name/bin/python" \
     tests/bench/bench_python.py "$@" 2>"$scratch/log" || echo "peers: bench_python failed: $(tail -n 1 "$scratch/log")" >&2
 }
-ours="$ours
+compare_python() {
+  ours="$ours
 $(ours_python sb3 envs sb3)"
-compare python_vss_v0/rsoccer_vss_v0 "$(our python_vss_v0_steps)" "$(run rsoccer bench_rsoccer_gym.py steps_per_s --api gym --seconds 8)" "steps of 25 ms/s"
-psim_rate=$(run psim bench_psim.py steps_per_s --env zoo --seconds 8)
-compare python_parallel_env/psim_environment "$(our python_parallel_env_steps)" "$(echo "$psim_rate" | awk '{print $1 * 6}')" "robots' transitions/s, theirs 1/60 s, ours 1/10 s"
-compare python_vec_64_both/envpool_soccer "$(our python_vec_64_both_steps)" "$(run envpool bench_envpool_soccer.py player_transitions_per_s)" "players' transitions/s, theirs 25 ms, ours 100 ms"
-sb3_rsoccer=$(run sb3 bench_sb3_rsoccer.py transitions_per_s --seconds 30)
-for how in vss_v0_as_peers vss_v0_large_batch matches_large_batch; do
-  compare "python_sb3_$how/sb3_rsoccer" "$(our "python_sb3_$how")" "$sb3_rsoccer" "transitions/s; our learner takes $(our "python_sb3_${how}_learner") % of the time"
-done
-compare train/sb3_rsoccer "$whole" "$sb3_rsoccer" "transitions/s per core"
+  compare python_vss_v0/rsoccer_vss_v0 "$(our python_vss_v0_steps)" "$(run rsoccer bench_rsoccer_gym.py steps_per_s --api gym --seconds 8)" "steps of 25 ms/s"
+  psim_rate=$(run psim bench_psim.py steps_per_s --env zoo --seconds 8)
+  compare python_parallel_env/psim_environment "$(our python_parallel_env_steps)" "$(echo "$psim_rate" | awk '{print $1 * 6}')" "robots' transitions/s, theirs 1/60 s, ours 1/10 s"
+  compare python_vec_64_both/envpool_soccer "$(our python_vec_64_both_steps)" "$(run envpool bench_envpool_soccer.py player_transitions_per_s)" "players' transitions/s, theirs 25 ms, ours 100 ms"
+  sb3_rsoccer=$(run sb3 bench_sb3_rsoccer.py transitions_per_s --seconds 30)
+  for how in vss_v0_as_peers vss_v0_large_batch matches_large_batch; do
+    compare "python_sb3_$how/sb3_rsoccer" "$(our "python_sb3_$how")" "$sb3_rsoccer" "transitions/s; our learner takes $(our "python_sb3_${how}_learner") % of the time"
+  done
+}
+
+[ "${2:-}" = --python ] || compare_core
+compare_python
+[ "${2:-}" = --python ] || compare train/sb3_rsoccer "$whole" "$sb3_rsoccer" "transitions/s per core"

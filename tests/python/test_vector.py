@@ -85,7 +85,7 @@ class VectorTest(unittest.TestCase):
         left = len(names) * 7 + names.index("time_left")
         env.reset(seed=2)
         goals = clocks = 0
-        for i in range(150):
+        for _ in range(150):
             observation, reward, terminated, truncated, infos = env.step(np.ones(env.action_space.shape))
             done = terminated | truncated
             self.assertEqual("final_obs" in infos, bool(done.any()))

@@ -27,7 +27,7 @@ class UsageError(Error, ValueError):
 class About(ctypes.Structure):
     """vs_capi_about of include/vsss/capi.h: the one struct that crosses the border, checked by size and version."""
 
-    _fields_ = (
+    _fields_ = (  # type: ignore
         [("size", ctypes.c_uint32), ("version", ctypes.c_uint32)]
         + [
             (name, ctypes.c_int32)
@@ -250,7 +250,7 @@ def realism_text(value: Any) -> Optional[str]:
             top.append(f"{key} = {str(given).lower()}\n")
             continue
         try:
-            low, high = (float(given), float(given)) if np.isscalar(given) else map(float, given)
+            low, high = map(float, (given, given) if np.isscalar(given) else given)  # type: ignore[arg-type]
         except (TypeError, ValueError):
             raise UsageError(f"realism: {key} = {given!r}: give a number, or (low, high)") from None
         sections.append(f"[{key}]\nlow = {low!r}\nhigh = {high!r}\n")

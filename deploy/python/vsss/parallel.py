@@ -114,7 +114,7 @@ class ParallelEnv(_Base):
         self._act(actions)
         a = self._batch.step()
         event = self._events[int(a["event"][0, 0])]
-        infos = {
+        infos: Dict[str, Dict[str, Any]] = {
             agent: {"reward_terms": dict(zip(self._terms, terms.tolist())), "event": event}
             for agent, terms in self._by_agent(a["reward_terms"]).items()
         }

@@ -70,11 +70,12 @@ class Strategy:
         """One team's player for one match: the function itself, or a new object of the class."""
         if not inspect.isclass(self.function):
             return self.function
+        make: Any = self.function
         try:
-            inspect.signature(self.function).bind(seed)
+            inspect.signature(make).bind(seed)
         except TypeError:
-            return self.function()
-        return self.function(seed)
+            return make()
+        return make(seed)
 
     def __getstate__(self) -> Any:
         return {"function": self.function}

@@ -247,6 +247,8 @@ class VectorEnv(_Rows):
                 "_episode_s": done,
             }
             infos["_final_info"] = done
+        if self.render_mode == "human":
+            self.render()
         return self._observation(a["observation"]), reward, terminated, truncated, infos
 
     def _scores(self, score: np.ndarray) -> np.ndarray:

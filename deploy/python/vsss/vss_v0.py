@@ -173,4 +173,6 @@ class VSSVectorEnv(_Rows):
             infos["final_info"] = {name: a["final_shaping"][:, i] for i, name in enumerate(_SHAPING)}
             infos["final_info"].update({"_" + name: done for name in _SHAPING})
             infos["_final_info"] = done
+        if self.render_mode == "human":
+            self.render()
         return a["observation"], a["reward"], a["terminated"], a["truncated"], infos
