@@ -24,31 +24,24 @@ class UsageError(Error, ValueError):
     """A request that was wrong: a setting, a shape, a number, a call at the wrong time. Nothing has changed."""
 
 
+_INTS = (
+    "team_size observation frame action reward_terms event_kinds world vss_observation vss_action vss_shaping summary "
+    "decision_hz vss_hz"
+)
+_FIELDS: Any = [
+    ("size", ctypes.c_uint32),
+    ("version", ctypes.c_uint32),
+    *((name, ctypes.c_int32) for name in _INTS.split()),
+    ("wheel_limit_radps", ctypes.c_double),
+    ("contract", ctypes.c_char * 24),
+    ("release", ctypes.c_char * 32),
+]
+
+
 class About(ctypes.Structure):
     """vs_capi_about of include/vsss/capi.h: the one struct that crosses the border, checked by size and version."""
 
-    _fields_ = (  # type: ignore
-        [("size", ctypes.c_uint32), ("version", ctypes.c_uint32)]
-        + [
-            (name, ctypes.c_int32)
-            for name in (
-                "team_size",
-                "observation",
-                "frame",
-                "action",
-                "reward_terms",
-                "event_kinds",
-                "world",
-                "vss_observation",
-                "vss_action",
-                "vss_shaping",
-                "summary",
-                "decision_hz",
-                "vss_hz",
-            )
-        ]
-        + [("wheel_limit_radps", ctypes.c_double), ("contract", ctypes.c_char * 24), ("release", ctypes.c_char * 32)]
-    )
+    _fields_ = _FIELDS
 
 
 _POINTER, _INT, _SIZE, _TEXT = ctypes.c_void_p, ctypes.c_int, ctypes.c_size_t, ctypes.c_char_p
