@@ -6,6 +6,7 @@
 #include "cli.h"
 #include "commands.h"
 #include "field_config.h"
+#include "field_guest.h"
 #include "field_report.h"
 #include "vsss/clock.h"
 #include "vsss/field_loop.h"
@@ -28,10 +29,10 @@ static const char about[] =
 static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
   *o = (options){.seed = 1};
   char camera_help[256];
-  snprintf(camera_help, sizeof camera_help, "%s", vs_camera_sources());
+  snprintf(camera_help, sizeof camera_help, "%s, firasim: or travesim: (a simulator's world)", vs_camera_sources());
   const vs_flag flags[] = {
       {"camera", VS_FLAG_TEXT, &o->camera, "SOURCE", camera_help, 0, 0},
-      {"radio", VS_FLAG_TEXT, &o->radio, "DEVICE", "serial device of the robots' radio", 0, 0},
+      {"radio", VS_FLAG_TEXT, &o->radio, "DEVICE", "serial device of the robots' radio, or firasim:, travesim:", 0, 0},
       {"policy", VS_FLAG_TEXT, &o->policy, "URI", "who decides; default: field.ini's", 0, 0},
       {"fallback", VS_FLAG_TEXT, &o->fallback, "URI", "takes over when the policy fails", 0, 0},
       {"team", VS_FLAG_TEXT, &o->team, "TEAM", "ours: blue or yellow", 0, 0},
@@ -192,6 +193,15 @@ int cmd_field(int argc, char **argv) {
   if (s == VS_OK && o.help) return 0;
   if (s == VS_OK) s = fill(&o, &config, &err);
   if (s != VS_OK) return vs_cli_error("field", &err);
+  if (field_guest_is(o.camera) || field_guest_is(o.radio)) {
+    const vs_field_def *def = &config.def;
+    const field_guest guest = {o.camera,  o.radio,         def->policy, def->team,
+                               def->seed, def->duration_s, o.seconds,   o.record};
+    vs_cli_catch_interrupts();
+    if (o.rt) vs_cli_realtime(o.rt);
+    s = field_guest_play(&guest, &err);
+    return s == VS_OK ? 0 : vs_cli_error("field", &err);
+  }
   use_rig_calib(&o, &config.def, rig_calib, sizeof rig_calib);
   vs_cli_catch_interrupts();
   vs_cli_before_the_end(vs_sender_last_stop);

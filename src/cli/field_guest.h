@@ -1,0 +1,24 @@
+// `vsss field --camera firasim:`: our team in another simulator of the league.
+#ifndef VSSS_CLI_FIELD_GUEST_H
+#define VSSS_CLI_FIELD_GUEST_H
+
+#include <stdbool.h>
+
+#include "vsss/status.h"
+#include <stdint.h>
+
+#include "vsss/world.h"
+
+typedef struct field_guest {
+  const char *camera, *radio; // "firasim:[PORTS]" or "travesim:[PORTS]"; radio NULL: a dry run
+  const char *policy;
+  vs_team team;
+  uint64_t seed;
+  double duration_s, seconds; // of the match; then stop (0: until Ctrl-C)
+  const char *record;         // CSV, may be NULL
+} field_guest;
+
+bool field_guest_is(const char *source); // a simulator's
+vs_status field_guest_play(const field_guest *guest, vs_error *err);
+
+#endif

@@ -1,0 +1,229 @@
+#include "vsss/guest.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "vsss/clock.h"
+#include "vsss/control.h"
+#include "vsss/field.h"
+#include "vsss/referee.h"
+#include "vsss/udp.h"
+
+#define WAIT_US        100000
+#define REFEREE_GROUP  "224.5.23.2"
+#define VISION_GROUP   "224.0.0.1"
+#define SIMULATOR      "127.0.0.1"
+#define LONGEST_STEP_S 0.5 // the simulator was stopped, or restarted
+
+struct vs_guest {
+  vs_guest_def def;
+  vs_control *control;
+  vs_udp vision, referee, command, placement;
+  vs_safety safety;
+  vs_guest_state state;
+  vs_ref_command call; // the last one; foul VS_FOULS: none yet
+  vs_world world;
+  vs_game game;
+  uint32_t step;
+  int64_t heard_us;
+  vs_guest_stats stats;
+};
+
+const char *vs_guest_state_name(vs_guest_state state) {
+  static const char *const name[] = {"play", "placing", "stopped", "halted"};
+  return name[state];
+}
+
+vs_guest_state vs_guest_next(vs_foul foul) {
+  switch (foul) {
+  case VS_FOUL_GAME_ON: return VS_GUEST_PLAY;
+  case VS_FOUL_STOP: return VS_GUEST_STOPPED;
+  case VS_FOUL_HALT: return VS_GUEST_HALTED;
+  default: return VS_GUEST_PLACING;
+  }
+}
+
+vs_event vs_guest_event(const vs_ref_command *call, double time_s) {
+  vs_event event = {.team = call->team == VS_YELLOW ? VS_YELLOW : VS_BLUE, .time_s = time_s};
+  switch (call->foul) {
+  case VS_FOUL_KICKOFF: event.kind = VS_EVENT_KICK_OFF; break;
+  case VS_FOUL_PENALTY_KICK: event.kind = VS_EVENT_PENALTY; break;
+  case VS_FOUL_GOAL_KICK:
+    event.kind = VS_EVENT_GOAL_KICK;
+    event.quadrant = call->quadrant;
+    break;
+  case VS_FOUL_FREE_BALL:
+    event.kind = VS_EVENT_FREE_BALL;
+    event.quadrant = call->quadrant;
+    break;
+  case VS_FOUL_HALT: event.kind = VS_EVENT_HALT; break;
+  default: event.kind = VS_EVENT_NONE;
+  }
+  return event;
+}
+
+static vs_status open_brain(vs_guest *g, vs_error *err) {
+  vs_player *player = NULL;
+  vs_status s = vs_player_open(g->def.policy, &player, err);
+  if (s != VS_OK) return s;
+  s = vs_control_new(player, &g->control, err);
+  if (s != VS_OK) {
+    vs_player_close(player);
+    return s;
+  }
+  return vs_control_reset(g->control, g->def.seed, false, err);
+}
+
+vs_status vs_guest_new(const vs_guest_def *def, vs_guest **out, vs_error *err) {
+  vs_status s = vs_league_supported(err);
+  if (s != VS_OK) return s;
+  vs_guest *g = calloc(1, sizeof *g);
+  if (!g) return vs_fail(err, VS_FAIL, "out of memory");
+  g->def = *def;
+  g->vision = g->referee = g->command = g->placement = VS_UDP_CLOSED;
+  g->call.foul = VS_FOULS;
+  g->game.duration_s = def->duration_s;
+  g->game.last_event = (vs_event){.kind = VS_EVENT_KICK_OFF, .team = VS_BLUE};
+  vs_safety_init(&g->safety, vs_clock_monotonic_us());
+  s = open_brain(g, err);
+  if (s == VS_OK) s = vs_udp_join(VISION_GROUP, def->vision, def->interface, &g->vision, err);
+  if (s == VS_OK) s = vs_udp_join(REFEREE_GROUP, def->referee, def->interface, &g->referee, err);
+  if (s == VS_OK && !def->dry) s = vs_udp_sender(SIMULATOR, def->command, NULL, &g->command, err);
+  if (s == VS_OK && !def->dry) s = vs_udp_sender(REFEREE_GROUP, def->placement, def->interface, &g->placement, err);
+  if (s != VS_OK) {
+    vs_guest_free(g);
+    return s;
+  }
+  *out = g;
+  return VS_OK;
+}
+
+static void send_wheels(vs_guest *g, const vs_wheels wheels[VS_TEAM_SIZE]) {
+  double scale = VS_WHEEL_RADIUS_M / g->def.wheel_radius_m;
+  uint8_t bytes[VS_LEAGUE_DATAGRAM_MAX];
+  vs_fira_packet p = {.commands = VS_TEAM_SIZE};
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    p.command[i].team = g->def.team;
+    p.command[i].robot = i;
+    p.command[i].wheels = (vs_wheels){wheels[i].left_radps * scale, wheels[i].right_radps * scale};
+  }
+  size_t size = vs_fira_packet_encode(&p, true, bytes, sizeof bytes);
+  vs_udp_send(&g->command, bytes, size);
+}
+
+void vs_guest_free(vs_guest *g) {
+  if (!g) return;
+  const vs_wheels still[VS_TEAM_SIZE] = {{0, 0}};
+  if (g->command.fd >= 0)
+    for (int k = 0; k < 3; k++) send_wheels(g, still);
+  vs_udp_close(&g->vision);
+  vs_udp_close(&g->referee);
+  vs_udp_close(&g->command);
+  vs_udp_close(&g->placement);
+  vs_control_free(g->control);
+  free(g);
+}
+
+// Where the referee itself would put us: always legal.
+static void send_placement(vs_guest *g) {
+  vs_world placed;
+  vs_rng unused = vs_rng_make(0, 0);
+  vs_ref_placement p = {.team = g->def.team};
+  uint8_t bytes[VS_LEAGUE_DATAGRAM_MAX];
+  vs_place(VS_PLACEMENT_PAPER, &g->game.last_event, &g->world, &unused, &placed);
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    p.given[i] = true;
+    p.pose[i] = placed.robot[g->def.team][i].pose;
+  }
+  size_t size = vs_ref_placement_encode(&p, bytes, sizeof bytes);
+  if (vs_udp_send(&g->placement, bytes, size)) g->stats.placements++;
+}
+
+static void hear(vs_guest *g, const vs_ref_command *call) {
+  if (call->foul == g->call.foul && call->timestamp_s == g->call.timestamp_s && call->team == g->call.team) return;
+  g->call = *call;
+  g->state = vs_guest_next(call->foul);
+  g->stats.calls++;
+  vs_event event = vs_guest_event(call, g->game.time_s);
+  if (event.kind != VS_EVENT_NONE) g->game.last_event = event;
+  if (g->state == VS_GUEST_PLACING && g->placement.fd >= 0) send_placement(g);
+  if (g->state == VS_GUEST_PLAY) vs_control_restart(g->control);
+}
+
+static void hear_referee(vs_guest *g) {
+  uint8_t bytes[VS_LEAGUE_RECEIVE_MAX];
+  size_t size;
+  vs_ref_command call;
+  while (vs_udp_receive(&g->referee, bytes, sizeof bytes, &size)) {
+    if (size > sizeof bytes || vs_ref_command_decode(bytes, size, &call, NULL) != VS_OK)
+      g->stats.garbage++;
+    else
+      hear(g, &call);
+  }
+}
+
+// The newest world that waits. What it leaves out keeps its place and is not valid.
+static bool see(vs_guest *g, uint32_t *step) {
+  uint8_t bytes[VS_LEAGUE_RECEIVE_MAX];
+  size_t size;
+  vs_fira_environment e;
+  bool seen = false;
+  while (vs_udp_receive(&g->vision, bytes, sizeof bytes, &size)) {
+    if (size > sizeof bytes || vs_fira_environment_decode(bytes, size, &e, NULL) != VS_OK) {
+      g->stats.garbage++;
+      continue;
+    }
+    for (int t = 0; t < VS_TEAMS; t++)
+      for (int i = 0; i < VS_TEAM_SIZE; i++) {
+        g->world.robot[t][i].valid = e.world.robot[t][i].valid;
+        if (e.world.robot[t][i].valid) g->world.robot[t][i] = e.world.robot[t][i];
+      }
+    g->world.ball.valid = e.world.ball.valid;
+    if (e.world.ball.valid) g->world.ball = e.world.ball;
+    memcpy(g->game.score, e.goals, sizeof g->game.score);
+    *step = e.step;
+    seen = true;
+  }
+  return seen;
+}
+
+vs_status vs_guest_tick(vs_guest *g, vs_guest_tick_result *out, vs_error *err) {
+  const vs_udp *sources[] = {&g->vision};
+  uint32_t step = 0;
+  memset(out, 0, sizeof *out);
+  vs_udp_wait(sources, 1, vs_clock_monotonic_us() + WAIT_US);
+  bool seen = see(g, &step);
+  hear_referee(g);
+  if (!seen) return VS_OK;
+  int64_t now_us = vs_clock_monotonic_us();
+  double dt_s = (double)(step - g->step) * g->def.step_s;
+  if (g->stats.worlds == 0 || !(dt_s > 0 && dt_s < LONGEST_STEP_S)) dt_s = g->def.step_s;
+  g->step = step;
+  g->stats.worlds++;
+  g->world.seq++;
+  g->world.time_us = now_us;
+  if (g->state == VS_GUEST_PLAY) g->game.time_s = fmin(g->game.time_s + dt_s, g->game.duration_s);
+  bool decided = false;
+  if (g->state == VS_GUEST_PLAY) {
+    vs_status s = vs_control_step(g->control, g->def.team, &g->world, &g->game, dt_s, out->wheels, &decided, err);
+    if (s != VS_OK) return s;
+  }
+  g->stats.decisions += decided ? 1 : 0;
+  vs_safety_input in = {.now_us = vs_clock_monotonic_us(),
+                        .armed = true, // by having started the program
+                        .referee = g->state == VS_GUEST_PLAY ? VS_EVENT_NONE : VS_EVENT_HALT,
+                        .team = g->def.team,
+                        .world = &g->world,
+                        .command_us = now_us};
+  memcpy(in.wheels, out->wheels, sizeof in.wheels);
+  out->safety = vs_safety_step(&g->safety, &in, out->wheels);
+  if (g->command.fd >= 0) send_wheels(g, out->wheels);
+  out->seen = true;
+  out->world = g->world;
+  out->game = g->game;
+  out->state = g->state;
+  return VS_OK;
+}
+
+const vs_guest_stats *vs_guest_get_stats(const vs_guest *g) { return &g->stats; }
