@@ -105,10 +105,9 @@ $(B)/tests/%: tests/%.c $(ARCHIVES)
 
 tests: all $(TEST_BIN) $(EXTRA_TESTS)
 
-# The Python package's tests run with the plain flavour; T=python/name runs one.
+# With the plain flavour also the Python package's and those of an installed copy: T=python/name, T=install/name.
 test: tests $(if $(filter plain,$(FLAVOUR)),$(B)/libvsss.so)
-	@case '$(T)' in python/*) ;; *) sh tests/run.sh $(B) $(T) ;; esac
-	@case '$(FLAVOUR):$(T)' in plain: | plain:python/*) sh tests/python/run.sh $(B) $(T:python/%=%) ;; esac
+	@sh tests/run.sh $(B) $(T)
 
 # Up to GCC 13 the leak checker takes one in 256 dynamic TLS blocks for one of a glibc before 2.25, reads its address from
 # what lies before it and dies of it ("Tracer caught signal 11"); it is told not to look for such blocks.

@@ -57,6 +57,7 @@ libopenblas-dev     the same where there is no oneDNN, and its baseline in the b
 libtorch-dev        --learner torch, oracle of the learner's tests
 libopenmpi-dev openmpi-bin  training on many machines
 libcmocka-dev zlib1g-dev    tests
+pkgconf             how other programs find libvsss: deploy/examples, and their test
 python3             tests: a client of the league written from its protocol alone
 "
 if [ $release = trixie ]; then

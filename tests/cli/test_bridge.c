@@ -60,7 +60,7 @@ static void command(venue *v, double left_radps) {
 static bool start(venue *v) {
   memset(v, 0, sizeof *v);
   v->bus = test_bus_open();
-  if (!v->bus) return false;
+  if (!v->bus) skip();
   assert_ok(vs_pty_new(&v->pty, err));
   assert_ok(vs_bus_subscribe(v->bus, VS_CH_RADIO, true, on_radio, v, err));
   vs_firmware_init(&v->robot, 7, now_ms());

@@ -109,8 +109,8 @@ static void the_real_photograph_gives_twelve_tags(void **state) {
   (void)state;
   const char *data = getenv("VSSS_REFERENCE_DATA");
   if (!data) {
-    printf("note: 1 checks not run: VSSS_REFERENCE_DATA is not set\n");
-    return;
+    printf("note: VSSS_REFERENCE_DATA is not set\n");
+    skip();
   }
   static vsss_run run;
   snprintf(arguments, sizeof arguments,

@@ -69,9 +69,9 @@ static void compare(const table *tracked, const table *truth, int first, double 
 static void field_plays_in_the_rig_with_true_poses_and_fresh_frames(void **state) {
   (void)state;
   if (SANITIZED) {
-    print_message("note: 1 check not run: a sanitizer is too slow for 20 s of "
+    print_message("note: a sanitizer is too slow for 20 s of "
                   "real time\n");
-    return;
+    skip();
   }
   char arguments[1024];
   const char *lcm = lcm_flags();
@@ -84,8 +84,8 @@ static void field_plays_in_the_rig_with_true_poses_and_fresh_frames(void **state
     int status = vsss_wait(rig, 1);
     const char *said = read_text(in_folder("rig.log"));
     if (!strstr(said, "install ")) fail_msg("rig: status %d: %s", status, said);
-    print_message("note: 1 check not run: %s", said); // no EGL, no AprilTag
-    return;
+    print_message("note: %s", said); // no EGL, no AprilTag
+    skip();
   }
   snprintf(arguments, sizeof arguments,
            "field --rt 50 --policy emc: --camera rig:%s/venue/camera --radio "

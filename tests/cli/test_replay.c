@@ -39,7 +39,7 @@ static int write_log(void **state) {
   vs_bus *bus;
   vs_error why = {0};
   if (vs_bus_open(url, &bus, &why) != VS_OK) {
-    printf("note: 1 check not run: %s\n", why.text);
+    printf("note: %s\n", why.text);
     exit(0);
   }
   add_event(bus, VS_EVENT_KICK_OFF, VS_BLUE, 0.0, 0, 0);
@@ -246,8 +246,8 @@ static void a_second_of_worlds_becomes_a_second_of_video(void **state) {
   snprintf(text, sizeof text, "--video %s --fps 4", video);
   vsss(&run, call(text));
   if (run.status == 1 && strstr(run.err, "install")) {
-    printf("note: 1 check not run: %s", run.err);
-    return;
+    printf("note: %s", run.err);
+    skip();
   }
   if (run.status != 0) fail_msg("status %d: %s", run.status, run.err);
   // The worlds span 0 to 999990 us: pictures at 0, 0.25, 0.5 and 0.75 s.

@@ -37,7 +37,8 @@ static pid_t start_rig(const char *flags) {
   int status = vsss_wait(rig, 1);
   const char *said = read_text(log_path);
   if (!strstr(said, "install ")) fail_msg("rig: status %d: %s", status, said);
-  print_message("note: 1 check not run: %s", said);
+  print_message("note: %s", said);
+  skip();
   return 0;
 }
 
@@ -154,8 +155,8 @@ static void a_folder_that_cannot_be_made_is_named(void **state) {
   static vsss_run run;
   vsss(&run, "rig --no-lcm --dir /nonexistent/venue");
   if (strstr(run.err, "install ")) {
-    print_message("note: 1 check not run: %s", run.err);
-    return;
+    print_message("note: %s", run.err);
+    skip();
   }
   assert_int_equal(run.status, 1);
   assert_non_null(strstr(run.err, "/nonexistent/venue: cannot make this folder: No such file"));

@@ -31,7 +31,7 @@ static void table_shows_rates_and_last_values(void **state) {
   (void)state;
   test_bus_url(); // fixes the port for the child
   vs_bus *bus = test_bus_open();
-  if (!bus) return;
+  if (!bus) skip();
   vs_bus_close(bus);
   char text[128];
   snprintf(text, sizeof text, "spy --print --seconds 2 --lcm '%s'", test_bus_url());
@@ -56,8 +56,8 @@ static void silence_is_said(void **state) {
   (void)state;
   vsss(&run, "spy --print --seconds 0.1 --lcm memq://");
   if (run.status == 1 && strstr(run.err, "install")) {
-    printf("note: 1 check not run: %s", run.err);
-    return;
+    printf("note: %s", run.err);
+    skip();
   }
   assert_int_equal(run.status, 0);
   assert_non_null(strstr(run.out, "nothing heard yet"));
@@ -80,8 +80,8 @@ static void the_jar_of_our_types_is_made_once(void **state) {
   unsetenv("DISPLAY");
   assert_int_not_equal(run.status, 0);
   if (strstr(run.err, "install")) {
-    printf("note: 1 check not run: %s", run.err);
-    return;
+    printf("note: %s", run.err);
+    skip();
   }
   glob_t found = {0};
   snprintf(pattern, sizeof pattern, "%s/vsss/*", cache);
@@ -113,10 +113,11 @@ static void wrong_urls_and_missing_routes_are_named(void **state) {
   }
   int status;
   waitpid(child, &status, 0);
-  if (WEXITSTATUS(status) == 77)
-    printf("note: 1 check not run: this machine lets nobody make a network of his own\n");
-  else
-    assert_int_equal(status, 0);
+  if (WEXITSTATUS(status) == 77) {
+    print_message("note: this machine lets nobody make a network of his own\n");
+    skip();
+  }
+  assert_int_equal(status, 0);
 }
 
 int main(void) {

@@ -114,7 +114,8 @@ static void a_step_allocates_nothing(void **state) {
   free(a);
   vs_vecenv_free(vec);
 #else
-  print_message("note: 1 checks not run: a sanitizer owns the allocator\n");
+  print_message("note: a sanitizer owns the allocator\n");
+  skip();
 #endif
 }
 

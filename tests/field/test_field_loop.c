@@ -175,8 +175,8 @@ static void every_frame_is_told_and_a_referee_halts_play(void **state) {
   vs_bus *outside;
   const char *url = "udpm://239.255.76.67:7717?ttl=0";
   if (vs_bus_open(url, &outside, &err) != VS_OK) {
-    print_message("note: 1 check not run: no multicast route\n");
-    return;
+    print_message("note: no multicast route\n");
+    skip();
   }
   memset(heard, 0, sizeof heard);
   assert_ok(vs_bus_subscribe(outside, VS_CHANNELS, false, count_message, NULL, err));

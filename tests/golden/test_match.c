@@ -59,8 +59,8 @@ static void check(vs_drive drive) {
   unsigned long long expected = 0, hash = hash_of_a_match(drive);
   key_of_this_machine(key, sizeof key);
   if (!find_golden(key, vs_drive_name(drive), &expected)) {
-    print_message("note: 1 checks not run: %s has no line '%s %s %016llx'\n", GOLDEN, key, vs_drive_name(drive), hash);
-    return;
+    print_message("note: %s has no line '%s %s %016llx'\n", GOLDEN, key, vs_drive_name(drive), hash);
+    skip();
   }
   if (hash != expected)
     fail_msg("EMC against INF, %d s, %s drive: hash %016llx, expected %016llx. Where a change of play was meant, put "

@@ -44,9 +44,9 @@ static void onnx_runtime_agrees_with_torch_on_1000_observations(void **state) {
   vs_status opened = vs_player_open(uri, &player, &err);
   unlink(file);
   if (opened != VS_OK && strstr(err.text, "no ONNX Runtime")) {
-    printf("note: 1 check not run: this build has no ONNX Runtime\n");
+    printf("note: this build has no ONNX Runtime\n");
     free(parameters);
-    return;
+    skip();
   }
   assert_int_equal(opened, VS_OK);
   static float x[OBSERVATIONS * VS_OBS_SIZE], raw[OBSERVATIONS * 4], value[OBSERVATIONS], action[OBSERVATIONS * 2];
@@ -164,7 +164,7 @@ int main(void) {
       printf("%s\n", err.text);
       return 1;
     }
-    printf("note: 4 checks not run: this build has no libtorch\n");
+    printf("note: this build has no libtorch\n");
     return 0;
   }
   const struct CMUnitTest tests[] = {

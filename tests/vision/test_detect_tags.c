@@ -152,8 +152,8 @@ static void the_real_photograph_gives_all_twelve_tags_within_a_pixel(void **stat
   (void)state;
   const char *data = getenv("VSSS_REFERENCE_DATA");
   if (!data) {
-    printf("note: 1 checks not run: VSSS_REFERENCE_DATA is not set\n");
-    return;
+    printf("note: VSSS_REFERENCE_DATA is not set\n");
+    skip();
   }
   char path[4096], line[512];
   vs_camera_def camera_def = vs_camera_def_default();

@@ -59,7 +59,7 @@ static void assert_tick(const vectors *v, const emc22_state *s, double out[VS_TE
 static void every_recorded_tick_of_the_original_is_repeated(void **state) {
   (void)state;
   vectors v;
-  if (!vectors_open(&v, "emc2022", VECTORS_COMMANDS)) return;
+  vectors_open(&v, "emc2022");
   emc22_state s;
   int commands = 0;
   double worst = 0;
@@ -119,7 +119,7 @@ static void start_at_five_seconds(vs_player *player) {
 static void player_sends_the_recorded_commands_of_a_three_centimetre_wheel(void **state) {
   (void)state;
   vectors v;
-  if (!vectors_open(&v, "emc2022", VECTORS_COMMANDS)) return;
+  vectors_open(&v, "emc2022");
   vs_player *player;
   assert_ok(vs_player_open("emc22:", &player, err));
   vs_game game = {0};

@@ -1,5 +1,4 @@
-// Reads the recorded behaviour of the original opponents: $VSSS_REFERENCE_DATA/opponents/NAME.csv.gz, 54,000 robot
-// commands each. Without the variable a test prints how many checks it leaves out and goes on.
+// Reads the recorded behaviour of the original opponents, tests/data/opponents/NAME.csv.gz: 54,000 robot commands each.
 #ifndef VSSS_TESTS_POLICY_VECTORS_H
 #define VSSS_TESTS_POLICY_VECTORS_H
 
@@ -8,6 +7,7 @@
 #include <string.h>
 
 #include "assert_near.h"
+#include "vsss/paths.h"
 
 #define VECTORS_COMMANDS 54000
 #define VECTORS_COLUMNS  48
@@ -18,23 +18,14 @@ typedef struct vectors {
   char *column[VECTORS_COLUMNS]; // of the present row; missing ones are ""
 } vectors;
 
-// False: the variable is not set. checks: how many values the caller would have compared.
-static bool vectors_open(vectors *v, const char *name, int checks) {
-  const char *folder = getenv("VSSS_REFERENCE_DATA");
-  if (!folder || !*folder) {
-    printf("note: %d checks not run: VSSS_REFERENCE_DATA is not set\n", checks);
-    return false;
-  }
-  char command[1200], path[1100];
-  snprintf(path, sizeof path, "%s/opponents/%s.csv.gz", folder, name);
-  FILE *there = fopen(path, "rb");
-  if (!there) fail_msg("%s: cannot be read", path);
-  fclose(there);
+static void vectors_open(vectors *v, const char *name) {
+  char command[1200], relative[100], path[1100];
+  snprintf(relative, sizeof relative, "tests/data/opponents/%s.csv.gz", name);
+  assert_ok(vs_path_find(relative, path, sizeof path, err));
   snprintf(command, sizeof command, "gzip -dc '%s'", path);
   v->pipe = popen(command, "r");
   assert_non_null(v->pipe);
   assert_non_null(fgets(v->line, sizeof v->line, v->pipe)); // the header line
-  return true;
 }
 
 static bool vectors_next(vectors *v) {
