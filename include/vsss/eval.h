@@ -51,8 +51,11 @@ typedef struct vs_estimate {
   double mean, low, high;
 } vs_estimate;
 vs_estimate vs_bootstrap(const double *values, int n, uint64_t seed); // n == 0: all NaN
+// A rate with the bounds of Wilson's 95 % score interval, which is no point at 0 or 1 (E. B. Wilson, Journal of the
+// American Statistical Association 22, 1927). n == 0: all NaN.
+vs_estimate vs_rate(int count, int n);
 
-// Seen from blue. Rates in [0, 1]; goals, score and restarts are per match.
+// Seen from blue. Rates in [0, 1], with vs_rate's intervals; the others with the bootstrap's. Goals, score and restarts are per match.
 typedef struct vs_series_summary {
   int matches; // played
   vs_estimate win, draw, loss, goals_for, goals_against;
@@ -67,6 +70,11 @@ vs_status vs_series_sum_up(const vs_match_result *results, int n, vs_series_summ
 // matches between them (symmetric). Maximum likelihood with one virtual draw for each pair that played, so that a
 // player who always wins stays finite; mean 0; 400 points are odds of 10.
 void vs_elo(int n, const double *points, const int *games, double *rating);
+// Standard deviations of these ratings, from the curvature of the likelihood; a draw counts as half a win and half a
+// loss, so they are rather too large. 95 %: 1.96 of them to either side. VS_FAIL: out of memory.
+vs_status vs_elo_deviations(int n, const int *games, const double *rating, double *deviation, vs_error *err);
+// The match as the other team saw it: what is blue's becomes yellow's.
+void vs_match_mirror(const vs_match_result *match, vs_match_result *out);
 
 #ifdef __cplusplus
 }

@@ -69,7 +69,8 @@ size_t vs_train_def_text(const vs_train_def *def, bool comments, char *out, size
 // What ranges cannot say: text fields, minibatch against batch.
 vs_status vs_train_def_check(const vs_train_def *def, vs_error *err);
 
-// What one update did: everything a double, so that CSV, TensorBoard and the status line read one table.
+// What one update did: everything a double, so that CSV, TensorBoard and the status line read one table. NaN: not
+// measured in this update (no episode ended, no such opponent).
 typedef struct vs_train_report {
   double update, transitions;           // so far
   double wall_s;                        // training time so far, over all resumes
@@ -78,8 +79,8 @@ typedef struct vs_train_report {
   double reward, term[VS_REWARD_TERMS]; // means per transition (terms unweighted)
   double weight[VS_REWARD_TERMS];       // of the terms in the reward of this update
   double entropy, kl, clip_fraction, explained_variance, policy_loss, value_loss, gradient_norm, learning_rate;
-  double episodes, episode_s, goals_for, goals_against; // ended in this update; means per episode
-  double frozen_score, replacements, pool;              // league
+  double episodes, episode_s, goals_for, goals_against;            // ended in this update; means per episode
+  double frozen_score, replacements, pool, self_score, pool_score; // league; scores: mean goal difference lately
 } vs_train_report;
 
 typedef struct vs_train_column {

@@ -1,5 +1,6 @@
 // vsss eval: many matches of one player against others, or of all against all, with intervals and ratings.
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +14,8 @@ enum { MAX_PLAYERS = 32 };
 // One row of the table: blue against yellow.
 typedef struct pairing {
   const char *uri[VS_TEAMS];
-  int player[VS_TEAMS]; // in the round robin
+  int player[VS_TEAMS]; // in the list; -1: --blue
+  bool swapped;         // --swap: the measured player is yellow, the pairing before has it as blue
   vs_match_result *results;
   vs_series_summary summary;
 } pairing;
@@ -22,6 +24,8 @@ typedef struct eval_command {
   vs_match_flags match;
   const char *blue, *against, *round_robin, *json, *csv;
   int matches;
+  bool swap;
+  vs_flag_list name;
 
   char *names; // the split list
   const char *player[MAX_PLAYERS];
@@ -47,10 +51,19 @@ static vs_status split(eval_command *c, const char *flag, const char *list, int 
   return VS_OK;
 }
 
-static void add_pairing(eval_command *c, const char *blue, int blue_index, int yellow_index) {
-  c->pairings[c->count] = (pairing){.uri = {blue, c->player[yellow_index]},
-                                    .player = {blue_index, yellow_index},
-                                    .results = c->results + (size_t)c->count * (size_t)c->matches};
+// What a player is called: by --name, in the order of --blue (if it plays) and the list, else its URI.
+static const char *name_of(const eval_command *c, int player) {
+  int at = c->round_robin ? player : player + 1;
+  if (at < c->name.count) return c->name.value[at];
+  return player < 0 ? c->blue : c->player[player];
+}
+
+static void add_pairing(eval_command *c, int blue, int yellow) {
+  c->pairings[c->count] =
+      (pairing){.uri = {blue < 0 ? c->blue : c->player[blue], yellow < 0 ? c->blue : c->player[yellow]},
+                .player = {blue, yellow},
+                .swapped = !c->round_robin && yellow < 0,
+                .results = c->results + (size_t)c->count * (size_t)c->matches};
   c->count++;
 }
 
@@ -58,14 +71,18 @@ static vs_status make_pairings(eval_command *c, vs_error *err) {
   vs_status s =
       c->round_robin ? split(c, "round-robin", c->round_robin, 2, err) : split(c, "against", c->against, 1, err);
   if (s != VS_OK) return s;
-  size_t most = (size_t)c->players * (size_t)c->players;
+  size_t most = (size_t)c->players * (size_t)(c->players > 1 ? c->players : 2);
+  int names = c->players + !c->round_robin;
+  if (c->name.count > names)
+    return vs_fail(err, VS_USAGE, "--name: given %d times for %d players", c->name.count, names);
   c->pairings = calloc(most, sizeof *c->pairings);
   c->results = calloc(most * (size_t)c->matches, sizeof *c->results);
   if (!c->pairings || !c->results) return vs_fail(err, VS_FAIL, "out of memory for %d matches", c->matches);
   for (int j = 0; j < c->players; j++) {
-    if (!c->round_robin) add_pairing(c, c->blue, -1, j);
+    if (!c->round_robin) add_pairing(c, -1, j);
+    if (!c->round_robin && c->swap) add_pairing(c, j, -1);
     for (int i = 0; c->round_robin && i < c->players; i++)
-      if (i != j) add_pairing(c, c->player[i], i, j);
+      if (i != j) add_pairing(c, i, j);
   }
   return VS_OK;
 }
@@ -87,6 +104,28 @@ static bool match_done(void *context, int index, const vs_match_result *result) 
   return !vs_cli_interrupted();
 }
 
+// Both colours as one row: matches as yellow seen from the other side.
+static vs_status sum_both(const eval_command *c, const pairing *p, vs_series_summary *out, vs_error *err) {
+  size_t n = (size_t)c->matches;
+  vs_match_result *both = calloc(2 * n, sizeof *both);
+  if (!both) return vs_fail(err, VS_FAIL, "out of memory for %d matches", c->matches);
+  memcpy(both, p[-1].results, n * sizeof *both);
+  for (size_t i = 0; i < n; i++) vs_match_mirror(&p->results[i], &both[n + i]);
+  vs_status s = vs_series_sum_up(both, 2 * c->matches, out, err);
+  free(both);
+  return s;
+}
+
+// The row of an opponent, once all its matches are played.
+static vs_status print_row(const eval_command *c, const pairing *p, vs_error *err) {
+  vs_series_summary row = p->summary;
+  if (c->round_robin || (c->swap && !p->swapped)) return VS_OK;
+  vs_status s = c->swap ? sum_both(c, p, &row, err) : VS_OK;
+  if (s == VS_OK && row.matches > 0)
+    vs_report_table_row(stdout, name_of(c, p->player[p->swapped ? VS_BLUE : VS_YELLOW]), &row);
+  return s;
+}
+
 static vs_status play_pairing(eval_command *c, const vs_env_def *env, vs_error *err) {
   pairing *p = &c->pairings[c->current];
   vs_series_def def = {.env = *env,
@@ -102,7 +141,7 @@ static vs_status play_pairing(eval_command *c, const vs_env_def *env, vs_error *
   // What is done counts, even where a match failed.
   vs_status summed = vs_series_sum_up(p->results, c->matches, &p->summary, s == VS_OK ? err : NULL);
   vs_progress_clear(&c->progress);
-  if (!c->round_robin && p->summary.matches > 0) vs_report_table_row(stdout, p->uri[VS_YELLOW], &p->summary);
+  if (summed == VS_OK) summed = print_row(c, p, s == VS_OK ? err : NULL);
   fflush(stdout);
   return s != VS_OK ? s : summed;
 }
@@ -125,7 +164,8 @@ static void print_restarts(const eval_command *c) {
   vs_report_restarts_head(stdout);
   for (int i = 0; i < c->count; i++)
     if (c->pairings[i].summary.matches > 0)
-      vs_report_restarts_row(stdout, c->pairings[i].uri[VS_YELLOW], &c->pairings[i].summary);
+      vs_report_restarts_row(stdout, name_of(c, c->pairings[i].player[c->pairings[i].swapped ? VS_BLUE : VS_YELLOW]),
+                             &c->pairings[i].summary);
 }
 
 // Each player that broke the idle rule is told so once, over all its matches.
@@ -148,8 +188,8 @@ static void print_idle(const eval_command *c) {
   }
 }
 
-// Elo of the players from all matches played. rating: MAX_PLAYERS doubles.
-static void rate(const eval_command *c, double *rating) {
+// Elo of the players from all matches played, and how far the 95 % interval reaches to either side. MAX_PLAYERS doubles.
+static void rate(const eval_command *c, double *rating, double *reach) {
   double points[MAX_PLAYERS * MAX_PLAYERS] = {0};
   int games[MAX_PLAYERS * MAX_PLAYERS] = {0};
   for (int k = 0; k < c->count; k++) {
@@ -164,6 +204,9 @@ static void rate(const eval_command *c, double *rating) {
     games[yellow] += p->summary.matches;
   }
   vs_elo(c->players, points, games, rating);
+  if (vs_elo_deviations(c->players, games, rating, reach, NULL) != VS_OK)
+    for (int i = 0; i < c->players; i++) reach[i] = NAN;
+  for (int i = 0; i < c->players; i++) reach[i] *= 1.96;
 }
 
 static const pairing *find_pairing(const eval_command *c, int blue, int yellow) {
@@ -173,22 +216,24 @@ static const pairing *find_pairing(const eval_command *c, int blue, int yellow) 
 }
 
 static void print_cross_table(const eval_command *c) {
-  double rating[MAX_PLAYERS];
-  rate(c, rating);
-  printf("win/draw/loss %% and score of the row as blue against the column as yellow\n\n%-16s", "");
-  for (int j = 0; j < c->players; j++) printf("  %-20.20s", c->player[j]);
-  printf("  %6s\n", "Elo");
+  double rating[MAX_PLAYERS], reach[MAX_PLAYERS];
+  rate(c, rating, reach);
+  printf("win/draw/loss %% and score of the row as blue against the column as yellow; Elo with its 95 %% "
+         "interval\n\n%-16s",
+         "");
+  for (int j = 0; j < c->players; j++) printf("  %-18.18s", name_of(c, j));
+  printf("  %12s\n", "Elo");
   for (int i = 0; i < c->players; i++) {
-    printf("%-16s", c->player[i]);
+    printf("%-16.16s", name_of(c, i));
     for (int j = 0; j < c->players; j++) {
       const pairing *p = find_pairing(c, i, j);
       char cell[64] = "";
       if (p && p->summary.matches > 0)
         snprintf(cell, sizeof cell, "%.0f/%.0f/%.0f %+.2f", 100 * p->summary.win.mean, 100 * p->summary.draw.mean,
                  100 * p->summary.loss.mean, p->summary.score.mean);
-      printf("  %-20s", cell);
+      printf("  %-18s", cell);
     }
-    printf("  %6.0f\n", rating[i]);
+    printf("  %6.0f +-%4.0f\n", rating[i], reach[i]);
   }
 }
 
@@ -213,13 +258,22 @@ static vs_status write_csv(const eval_command *c, FILE *out, vs_error *err) {
 }
 
 static void write_ratings(const eval_command *c, FILE *out) {
-  double rating[MAX_PLAYERS];
-  rate(c, rating);
+  double rating[MAX_PLAYERS], reach[MAX_PLAYERS];
+  rate(c, rating, reach);
   fprintf(out, "\"elo\": {");
   for (int i = 0; i < c->players; i++) {
     fprintf(out, "%s", i ? ", " : "");
     vs_json_put(out, c->player[i]);
     fprintf(out, ": %.2f", rating[i]);
+  }
+  fprintf(out, "},\n\"elo_interval\": {");
+  for (int i = 0; i < c->players; i++) {
+    fprintf(out, "%s", i ? ", " : "");
+    vs_json_put(out, c->player[i]);
+    if (isfinite(reach[i]))
+      fprintf(out, ": [%.2f, %.2f]", rating[i] - reach[i], rating[i] + reach[i]);
+    else
+      fprintf(out, ": null");
   }
   fprintf(out, "},\n");
 }
@@ -256,8 +310,10 @@ static void print_head(const eval_command *c) {
     printf("round robin of %d players, %d matches as blue and as yellow in each pairing: %s\n", c->players, c->matches,
            about);
   else
-    printf("%s as blue, %d matches against each: %s\n", c->blue, c->matches, about);
-  printf("blue attacks +x and kicks off first; sides are not swapped; a match ends at 10 goals' difference\n\n");
+    printf("%s as blue, %d matches against each%s: %s\n", name_of(c, -1), c->matches, c->swap ? ", and as yellow" : "",
+           about);
+  printf("blue attacks +x and kicks off first; %s; 10 goals ahead ends a match\n\n",
+         c->round_robin || c->swap ? "both colours are played" : "colours are not swapped (--swap)");
   if (!c->round_robin) vs_report_table_head(stdout);
   fflush(stdout);
 }
@@ -288,6 +344,8 @@ static vs_status evaluate(eval_command *c, const vs_env_def *env, FILE *json, FI
 }
 
 static vs_status run(eval_command *c, vs_error *err) {
+  if (c->round_robin && c->swap)
+    return vs_fail(err, VS_USAGE, "--round-robin plays both colours: --swap is not needed");
   if (c->round_robin && c->against) return vs_fail(err, VS_USAGE, "--round-robin and --against exclude each other");
   if (!c->against) c->against = "random:,inf:,emc:";
   vs_status s = make_pairings(c, err);
@@ -315,6 +373,9 @@ int cmd_eval(int argc, char **argv) {
       {"round-robin", VS_FLAG_TEXT, &c.round_robin, "URI,...", "all against all, from both sides: cross table, Elo", 0,
        0},
       {"matches", VS_FLAG_INT, &c.matches, "N", "of each pairing", 1, 1000000},
+      {"swap", VS_FLAG_SWITCH, &c.swap, NULL, "each pairing in both colours, counted together", 0, 0},
+      {"name", VS_FLAG_LIST, &c.name, "NAME", "what the tables call --blue, the next one the first opponent, ...", 0,
+       0},
       VS_MATCH_FLAG_ROWS(c.match),
       {"json", VS_FLAG_TEXT, &c.json, "FILE", "also write everything there, each match with its hash", 0, 0},
       {"csv", VS_FLAG_TEXT, &c.csv, "FILE", "also write the table there", 0, 0},
@@ -324,7 +385,7 @@ int cmd_eval(int argc, char **argv) {
   vs_error err = {0};
   char about[2048];
   vs_match_flags_about("Plays many matches and prints win, draw and loss rates, goals and score, each with its\n"
-                       "bootstrap 95 % interval.",
+                       "95 % interval (rates: Wilson, others: bootstrap). One of them again: vsss sim --match K.",
                        about, sizeof about);
   vs_status s = vs_args_parse(argc, argv, "eval [flags]", about, flags, NULL, &help, &err);
   if (help) return 0;

@@ -29,24 +29,68 @@ static const figure figures[] = {
     {"goals", "Goals per episode", "goals", {{"goals_for", "for"}, {"goals_against", "against"}}},
     {"episode", "Length of an episode", "seconds", {{"episode_s", "mean"}}},
     {"league",
-     "The league",
-     "score, count",
-     {{"frozen_score", "score against the frozen self"},
-      {"replacements", "times it was replaced"},
-      {"pool", "in the pool"}}},
+     "Score against earlier selves",
+     "goal difference per episode",
+     {{"self_score", "the present self"}, {"pool_score", "pool"}, {"frozen_score", "frozen self"}}},
+    {"pool",
+     "Earlier selves",
+     "count",
+     {{"pool", "in the pool"}, {"replacements", "times the frozen one was replaced"}}},
     {"policy", "Policy", "nats, fraction", {{"entropy", "entropy"}, {"kl", "KL"}, {"clip_fraction", "clipped"}}},
     {"value", "Value", "", {{"explained_variance", "explained variance"}, {"value_loss", "loss"}}},
     {"speed", "Speed", "transitions/s", {{"transitions_per_s", "transitions/s"}}},
 };
 
-// An update ends few episodes: each point is the mean of half a percent of the run. gnuplot runs in the run's folder.
-static void plot_figure(FILE *out, const figure *f, const char *ending) {
-  fprintf(out, "set output '%s.%s'\nset title '%s'\nset ylabel '%s'\nplot ", f->name, ending, f->title, f->y);
+enum { COLUMNS_MAX = 128 };
+// Columns of progress.csv in which something was measured: gnuplot ends with an error where there is nothing to draw.
+typedef struct measured {
+  int count;
+  char name[COLUMNS_MAX][48];
+} measured;
+
+static void read_measured(const char *folder, measured *m) {
+  char path[PATH_MAX], line[4096], header[4096] = "";
+  bool found[COLUMNS_MAX] = {false};
+  snprintf(path, sizeof path, "%s/progress.csv", folder);
+  FILE *f = fopen(path, "r");
+  if (f && !fgets(header, sizeof header, f)) header[0] = '\0';
+  while (f && fgets(line, sizeof line, f)) {
+    char *rest = line, *cell;
+    for (int i = 0; i < COLUMNS_MAX && (cell = strsep(&rest, ",\n")) != NULL; i++)
+      if (*cell) found[i] = true;
+  }
+  if (f) fclose(f);
+  m->count = 0;
+  char *rest = header, *cell;
+  for (int i = 0; i < COLUMNS_MAX && (cell = strsep(&rest, ",\n")) != NULL; i++)
+    if (found[i]) snprintf(m->name[m->count++], sizeof *m->name, "%s", cell);
+}
+
+static bool was_measured(const measured *m, const char *column) {
+  for (int i = 0; i < m->count; i++)
+    if (!strcmp(m->name[i], column)) return true;
+  return false;
+}
+
+static bool can_draw(const figure *f, const measured *m) {
   for (int i = 0; f->curve[i][0]; i++)
+    if (was_measured(m, f->curve[i][0])) return true;
+  return false;
+}
+
+// An update ends few episodes: each point is the mean of half a percent of the run. gnuplot runs in the run's folder.
+static void plot_figure(FILE *out, const figure *f, const measured *m, const char *ending) {
+  if (!can_draw(f, m)) return;
+  fprintf(out, "set output '%s.%s'\nset title '%s'\nset ylabel '%s'\nplot ", f->name, ending, f->title, f->y);
+  const char *separator = "";
+  for (int i = 0; f->curve[i][0]; i++) {
+    if (!was_measured(m, f->curve[i][0])) continue;
     fprintf(out,
             "%s'progress.csv' using (bin*floor(column('transitions')/1e6/bin)):(column('%s')) smooth unique "
             "with lines lw 2 title '%s'",
-            i ? ", " : "", f->curve[i][0], f->curve[i][1]);
+            separator, f->curve[i][0], f->curve[i][1]);
+    separator = ", ";
+  }
   fprintf(out, "\n");
 }
 
@@ -111,7 +155,7 @@ static bool has_rows(const char *folder, const char *name) {
   return lines == 2;
 }
 
-static void write_script(FILE *out, const opponents *o, bool svg) {
+static void write_script(FILE *out, const measured *m, const opponents *o, bool svg) {
   const char *ending = svg ? "svg" : "png";
   fprintf(out,
           "set terminal %s\nset datafile separator ','\nset key autotitle columnhead\nset datafile columnheaders\nset "
@@ -119,7 +163,7 @@ static void write_script(FILE *out, const opponents *o, bool svg) {
           "below\nset xlabel 'million transitions'\n"
           "stats 'progress.csv' using (column('transitions')/1e6) nooutput\nbin = STATS_max/200\n",
           svg ? "svg size 900,560 font 'sans,14'" : "pngcairo size 900,560 font 'sans,12'");
-  for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) plot_figure(out, &figures[i], ending);
+  for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) plot_figure(out, &figures[i], m, ending);
   if (o->count) plot_eval(out, o, ending);
 }
 
@@ -137,7 +181,7 @@ static vs_status run_gnuplot(FILE *script, FILE *said, const char *folder, vs_er
   rewind(said);
   while (fgets(line, sizeof line, said)) {
     line[strcspn(line, "\n")] = '\0';
-    if (line[0]) memcpy(why, line, sizeof why);
+    if (line[0] && strncmp(line, "Warning", 7) != 0) memcpy(why, line, sizeof why);
   }
   return vs_fail(err, VS_FAIL, "gnuplot: %s", why);
 }
@@ -146,16 +190,19 @@ static vs_status plot(const char *folder, bool svg, vs_error *err) {
   if (!has_rows(folder, "progress.csv"))
     return vs_fail(err, VS_FAIL, "%s/progress.csv: missing or empty: is this the folder of a run?", folder);
   opponents o;
+  measured m;
   read_opponents(folder, &o);
+  read_measured(folder, &m);
   FILE *script = tmpfile(), *said = tmpfile();
   vs_status s = script && said ? VS_OK : vs_fail(err, VS_FAIL, "a temporary file: %s", strerror(errno));
-  if (s == VS_OK) write_script(script, &o, svg);
+  if (s == VS_OK) write_script(script, &m, &o, svg);
   if (s == VS_OK) s = run_gnuplot(script, said, folder, err);
   if (script) fclose(script);
   if (said) fclose(said);
   if (s != VS_OK) return s;
   const char *ending = svg ? "svg" : "png";
-  for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) printf("%s/%s.%s\n", folder, figures[i].name, ending);
+  for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
+    if (can_draw(&figures[i], &m)) printf("%s/%s.%s\n", folder, figures[i].name, ending);
   if (o.count) printf("%s/eval_score.%s\n%s/eval_win.%s\n", folder, ending, folder, ending);
   return VS_OK;
 }

@@ -15,7 +15,8 @@ enum { MAX_WATCHERS = 4 };
 typedef struct sim_command {
   vs_match_flags match;
   const char *uri[VS_TEAMS];
-  int matches;
+  int matches, only; // only: --match, 0: all
+  vs_flag_list name;
   bool realtime, json;
   const char *lcm, *video;
 
@@ -41,6 +42,10 @@ static void print_event(const vs_event *event, const vs_game *game) {
   fflush(stdout);
 }
 
+static const char *name_of(const sim_command *c, int team) {
+  return team < c->name.count ? c->name.value[team] : c->uri[team];
+}
+
 static vs_status show_frame(void *state, const vs_watch_view *view, vs_error *err) {
   (void)err;
   sim_command *c = state;
@@ -50,8 +55,8 @@ static vs_status show_frame(void *state, const vs_watch_view *view, vs_error *er
     print_event(view->event, game);
   }
   char text[160];
-  snprintf(text, sizeof text, "%s %d : %d %s  %5.1f s", c->uri[VS_BLUE], game->score[VS_BLUE], game->score[VS_YELLOW],
-           c->uri[VS_YELLOW], game->time_s);
+  snprintf(text, sizeof text, "%s %d : %d %s  %5.1f s", name_of(c, VS_BLUE), game->score[VS_BLUE],
+           game->score[VS_YELLOW], name_of(c, VS_YELLOW), game->time_s);
   vs_progress_show(&c->progress, (view->match + game->time_s / game->duration_s) / c->matches, text);
   return VS_OK;
 }
@@ -81,7 +86,7 @@ static vs_status open_watchers(sim_command *c, vs_error *err) {
   }
   if (s == VS_OK && c->video) {
     char title[128];
-    snprintf(title, sizeof title, "%s  %s", c->uri[VS_BLUE], c->uri[VS_YELLOW]);
+    snprintf(title, sizeof title, "%s  %s", name_of(c, VS_BLUE), name_of(c, VS_YELLOW));
     s = vs_watch_video(c->video, title, &c->watcher[c->watchers], err);
     if (s == VS_OK) c->watchers++;
   }
@@ -118,7 +123,7 @@ static void keep_result(const vs_env *env, vs_match_result *r) {
 // One match, frame by frame, under the eyes of the watchers. The result holds what was played, even after Ctrl-C.
 static vs_status play_watched(sim_command *c, vs_env *env, int match, vs_error *err) {
   vs_match_result *r = &c->results[match];
-  r->seed = vs_seed_mix(c->match.seed, (uint64_t)match);
+  r->seed = vs_seed_mix(c->match.seed, (uint64_t)(c->only ? c->only - 1 : match));
   vs_status s = vs_env_reset(env, r->seed, err);
   vs_event event = {.kind = VS_EVENT_KICK_OFF, .team = VS_BLUE};
   vs_idle idle = {0};
@@ -137,7 +142,9 @@ static void print_head(const sim_command *c) {
   if (c->json) return;
   char about[160];
   vs_match_flags_describe(&c->match, about, sizeof about);
-  printf("%s (blue) against %s (yellow): %s\n\n", c->uri[VS_BLUE], c->uri[VS_YELLOW], about);
+  printf("%s (blue) against %s (yellow): %s", name_of(c, VS_BLUE), name_of(c, VS_YELLOW), about);
+  if (c->only) printf(", match %d", c->only);
+  printf("\n\n");
   fflush(stdout);
 }
 
@@ -184,7 +191,7 @@ static vs_status play_over_threads(sim_command *c, vs_error *err) {
 static void print_match(const sim_command *c, double wall_s) {
   const vs_match_result *r = &c->results[0];
   printf("\n%-12s %10s %10s\n", "", "blue", "yellow");
-  printf("%-12s %10s %10s\n", "player", c->uri[VS_BLUE], c->uri[VS_YELLOW]);
+  printf("%-12s %10s %10s\n", "player", name_of(c, VS_BLUE), name_of(c, VS_YELLOW));
   printf("%-12s %10d %10d\n", "goals", r->score[VS_BLUE], r->score[VS_YELLOW]);
   printf("%-12s %10d %10d\n", "penalties", r->events[VS_BLUE][VS_EVENT_PENALTY],
          r->events[VS_YELLOW][VS_EVENT_PENALTY]);
@@ -193,19 +200,19 @@ static void print_match(const sim_command *c, double wall_s) {
            r->events[VS_YELLOW][VS_EVENT_GOAL_KICK]);
   printf("%-12s %10d\n", "free balls",
          r->events[VS_BLUE][VS_EVENT_FREE_BALL] + r->events[VS_YELLOW][VS_EVENT_FREE_BALL]);
-  for (int t = 0; t < VS_TEAMS; t++) vs_report_idle(stdout, c->uri[t], r->idle_warnings[t], r->idle_sent_off[t]);
+  for (int t = 0; t < VS_TEAMS; t++) vs_report_idle(stdout, name_of(c, t), r->idle_warnings[t], r->idle_sent_off[t]);
   printf("\n%s%.1f s played in %.2f s (%.0f times real time), hash %016" PRIx64 "\n",
          r->played ? "" : "stopped: ", r->time_s, wall_s, r->time_s / wall_s, r->hash);
 }
 
 static void print_series(const sim_command *c, const vs_series_summary *summary, double wall_s) {
   vs_report_table_head(stdout);
-  vs_report_table_row(stdout, c->uri[VS_YELLOW], summary);
+  vs_report_table_row(stdout, name_of(c, VS_YELLOW), summary);
   printf("\n");
   vs_report_restarts_head(stdout);
-  vs_report_restarts_row(stdout, c->uri[VS_YELLOW], summary);
+  vs_report_restarts_row(stdout, name_of(c, VS_YELLOW), summary);
   for (int t = 0; t < VS_TEAMS; t++)
-    vs_report_idle(stdout, c->uri[t], summary->idle_warnings[t], summary->idle_sent_off[t]);
+    vs_report_idle(stdout, name_of(c, t), summary->idle_warnings[t], summary->idle_sent_off[t]);
   double played_s = summary->mean_time_s * summary->matches;
   if (summary->matches < c->matches) printf("\nstopped: %d of %d matches\n", summary->matches, c->matches);
   printf("\n%.0f s played in %.1f s (%.0f times real time)\n", played_s, wall_s, played_s / wall_s);
@@ -262,6 +269,9 @@ int cmd_sim(int argc, char **argv) {
       {"blue", VS_FLAG_TEXT, &c.uri[VS_BLUE], "URI", "player that attacks +x [onnx:, our policy]", 0, 0},
       {"yellow", VS_FLAG_TEXT, &c.uri[VS_YELLOW], "URI", "player that attacks -x", 0, 0},
       {"matches", VS_FLAG_INT, &c.matches, "N", "how many", 1, 1000000},
+      {"match", VS_FLAG_INT, &c.only, "K", "only match K of the series that --seed begins, as it was; 0: all", 0,
+       1000000},
+      {"name", VS_FLAG_LIST, &c.name, "NAME", "what tables and video call blue; given again, yellow", 0, 0},
       VS_MATCH_FLAG_ROWS(c.match),
       {"realtime", VS_FLAG_SWITCH, &c.realtime, NULL, "at the pace of the clock, published over LCM", 0, 0},
       {"lcm", VS_FLAG_TEXT, &c.lcm, "URL", "publish there, such as udpm://239.255.76.67:7667?ttl=1", 0, 0},
@@ -275,6 +285,9 @@ int cmd_sim(int argc, char **argv) {
   vs_match_flags_about("Plays matches between two players in the simulator, as fast as they go.", about, sizeof about);
   vs_status s = vs_args_parse(argc, argv, "sim [flags]", about, flags, NULL, &help, &err);
   if (help) return 0;
+  if (s == VS_OK && c.name.count > VS_TEAMS) s = vs_fail(&err, VS_USAGE, "--name: given more than twice");
+  if (s == VS_OK && c.only && c.matches > 1)
+    s = vs_fail(&err, VS_USAGE, "--match plays one match: leave --matches out");
   vs_model *model = NULL;
   if (s == VS_OK) s = vs_match_flags_open(&c.match, &model, &c.env, &err);
   if (s == VS_OK && !c.uri[VS_BLUE]) c.uri[VS_BLUE] = default_blue();

@@ -6,7 +6,7 @@
 
 #include "json_text.h"
 
-// One estimate as "56.0 [46.0, 66.0]" in a column of fixed width.
+// One estimate as "56 [46, 66]".
 static void cell(FILE *out, const vs_estimate *e, double scale, int digits, int width) {
   char text[64];
   snprintf(text, sizeof text, "%.*f [%.*f, %.*f]", digits, scale * e->mean, digits, scale * e->low, digits,
@@ -14,24 +14,38 @@ static void cell(FILE *out, const vs_estimate *e, double scale, int digits, int 
   fprintf(out, "  %-*s", width, e->mean == e->mean ? text : "-");
 }
 
+enum { NAME_WIDTH = 12 };
+
+// A long name, such as a file's, is cut at its front: its end tells it from others.
+static void name_cell(FILE *out, const char *name) {
+  size_t n = strlen(name);
+  if (n <= NAME_WIDTH)
+    fprintf(out, "%-*s", NAME_WIDTH, name);
+  else
+    fprintf(out, "..%s", name + n - (NAME_WIDTH - 2));
+}
+
+// At most 100 columns.
 void vs_report_table_head(FILE *out) {
-  fprintf(out, "%-14s %7s  %-20s  %-20s  %-20s  %-18s  %-18s  %s\n", "against", "matches", "win % [95 %]", "draw %",
-          "loss %", "goals for", "goals against", "score");
+  fprintf(out, "%-*s %6s  %-13s  %-13s  %-13s  %-11s  %s\n", NAME_WIDTH, "against", "played", "win % [95 %]", "draw %",
+          "loss %", "goals", "score");
 }
 
 void vs_report_table_row(FILE *out, const char *against, const vs_series_summary *s) {
-  fprintf(out, "%-14s %7d", against, s->matches);
-  cell(out, &s->win, 100, 1, 20);
-  cell(out, &s->draw, 100, 1, 20);
-  cell(out, &s->loss, 100, 1, 20);
-  cell(out, &s->goals_for, 1, 2, 18);
-  cell(out, &s->goals_against, 1, 2, 18);
+  name_cell(out, against);
+  fprintf(out, " %6d", s->matches);
+  cell(out, &s->win, 100, 0, 13);
+  cell(out, &s->draw, 100, 0, 13);
+  cell(out, &s->loss, 100, 0, 13);
+  char goals[32];
+  snprintf(goals, sizeof goals, "%.2f : %.2f", s->goals_for.mean, s->goals_against.mean);
+  fprintf(out, "  %-11s", s->matches ? goals : "-");
   cell(out, &s->score, 1, 2, 0);
   fprintf(out, "\n");
 }
 
 void vs_report_restarts_head(FILE *out) {
-  fprintf(out, "%-14s %13s %17s %10s %10s %9s %14s\n", "a match", "penalties for", "penalties against", "free balls",
+  fprintf(out, "%-12s %13s %17s %10s %10s %9s %14s\n", "a match", "penalties for", "penalties against", "free balls",
           "goal kicks", "seconds", "idle, sent off");
 }
 
@@ -39,8 +53,9 @@ void vs_report_restarts_row(FILE *out, const char *against, const vs_series_summ
   char idle[64];
   snprintf(idle, sizeof idle, "%.1f:%.1f  %.1f:%.1f", s->idle_warnings[VS_BLUE], s->idle_warnings[VS_YELLOW],
            s->idle_sent_off[VS_BLUE], s->idle_sent_off[VS_YELLOW]);
-  fprintf(out, "%-14s %13.2f %17.2f %10.2f %10.2f %9.1f %14s\n", against, s->penalties_for, s->penalties_against,
-          s->free_balls, s->goal_kicks, s->mean_time_s, idle);
+  name_cell(out, against);
+  fprintf(out, " %13.2f %17.2f %10.2f %10.2f %9.1f %14s\n", s->penalties_for, s->penalties_against, s->free_balls,
+          s->goal_kicks, s->mean_time_s, idle);
 }
 
 void vs_report_idle(FILE *out, const char *player, double warnings, double sent_off) {

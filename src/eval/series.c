@@ -95,7 +95,7 @@ static void play(void *context, int piece, int thread) {
   for (int index; (index = take(s)) >= 0;) {
     vs_match_result *result = &s->results[index];
     if (vs_match_play(env, vs_seed_mix(s->def->seed, (uint64_t)index), asked_to_go_on, s, result, &error) != VS_OK) {
-      vs_fail_prefix(&error, "match %d", index);
+      vs_fail_prefix(&error, "match %d of the series", index + 1);
       stop_with(s, &error);
       break;
     }

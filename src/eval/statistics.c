@@ -31,15 +31,29 @@ vs_estimate vs_bootstrap(const double *values, int n, uint64_t seed) {
   return (vs_estimate){mean_of(values, n), means[tail], means[VS_BOOTSTRAP_RESAMPLES - 1 - tail]};
 }
 
+vs_estimate vs_rate(int count, int n) {
+  if (n == 0) return (vs_estimate){NAN, NAN, NAN};
+  const double z = 1.959963984540054; // 97.5 % of the normal distribution
+  double p = (double)count / n, middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
+  double half = z / (1.0 + z * z / n) * sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));
+  return (vs_estimate){p, count == 0 ? 0.0 : middle - half, count == n ? 1.0 : middle + half};
+}
+
+void vs_match_mirror(const vs_match_result *match, vs_match_result *out) {
+  *out = *match;
+  for (int t = 0; t < VS_TEAMS; t++) {
+    out->score[t] = match->score[!t];
+    memcpy(out->events[t], match->events[!t], sizeof out->events[t]);
+    out->idle_warnings[t] = match->idle_warnings[!t];
+    out->idle_sent_off[t] = match->idle_sent_off[!t];
+  }
+}
+
 typedef double (*measure_fn)(const vs_match_result *match);
 
 static double goals_for(const vs_match_result *m) { return m->score[VS_BLUE]; }
 static double goals_against(const vs_match_result *m) { return m->score[VS_YELLOW]; }
 static double difference(const vs_match_result *m) { return goals_for(m) - goals_against(m); }
-static double won(const vs_match_result *m) { return difference(m) > 0; }
-static double drawn(const vs_match_result *m) { return difference(m) == 0; }
-static double lost(const vs_match_result *m) { return difference(m) < 0; }
-
 static vs_estimate estimate(const vs_match_result *const *played, int n, measure_fn measure, double *scratch) {
   for (int i = 0; i < n; i++) scratch[i] = measure(played[i]);
   return vs_bootstrap(scratch, n, 0);
@@ -53,9 +67,11 @@ static double mean_events(const vs_match_result *const *played, int n, int team,
 
 static void sum_up_played(const vs_match_result *const *played, int n, double *scratch, vs_series_summary *out) {
   out->matches = n;
-  out->win = estimate(played, n, won, scratch);
-  out->draw = estimate(played, n, drawn, scratch);
-  out->loss = estimate(played, n, lost, scratch);
+  int won = 0, lost = 0;
+  for (int i = 0; i < n; i++) won += difference(played[i]) > 0, lost += difference(played[i]) < 0;
+  out->win = vs_rate(won, n);
+  out->draw = vs_rate(n - won - lost, n);
+  out->loss = vs_rate(lost, n);
   out->goals_for = estimate(played, n, goals_for, scratch);
   out->goals_against = estimate(played, n, goals_against, scratch);
   out->score = estimate(played, n, difference, scratch);

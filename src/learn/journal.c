@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,9 +60,28 @@ static vs_status write_bytes(vs_journal *j, vs_bytes *bytes, vs_error *err) {
 
 static double now_s(void) { return 1e-6 * (double)vs_clock_wall_us(); }
 
+// Rows under the header of another version would stand in the wrong columns: its table is put aside, under .old.
+static vs_status put_aside_other_columns(const vs_journal *j, vs_error *err) {
+  char path[PATH_MAX], old[PATH_MAX + 8], line[4096], header[4096] = "";
+  int count;
+  size_t used = 0;
+  const vs_train_column *column = vs_train_columns(&count);
+  for (int i = 0; i < count && used < sizeof header; i++)
+    used += (size_t)snprintf(header + used, sizeof header - used, "%s%c", column[i].name, i + 1 < count ? ',' : '\n');
+  snprintf(path, sizeof path, "%s/progress.csv", j->folder);
+  snprintf(old, sizeof old, "%s.old", path);
+  FILE *f = fopen(path, "r");
+  if (!f) return VS_OK;
+  bool other = fgets(line, sizeof line, f) && strcmp(line, header) != 0;
+  fclose(f);
+  if (other && rename(path, old) != 0) return vs_fail(err, VS_FAIL, "%s: %s", old, strerror(errno));
+  return VS_OK;
+}
+
 static vs_status begin_files(vs_journal *j, double update, vs_error *err) {
   bool empty;
-  vs_status s = open_csv(j, "progress.csv", update, &j->progress, &empty, err);
+  vs_status s = update > 0.0 ? put_aside_other_columns(j, err) : VS_OK;
+  if (s == VS_OK) s = open_csv(j, "progress.csv", update, &j->progress, &empty, err);
   if (s != VS_OK) return s;
   int count;
   const vs_train_column *column = vs_train_columns(&count);
@@ -114,8 +134,9 @@ vs_status vs_journal_add(vs_journal *journal, const vs_train_report *report, vs_
   vs_bytes summary = {0}, bytes = {0};
   for (int i = 0; i < count; i++) {
     double value = vs_train_value(report, &column[i]);
-    fprintf(journal->progress, "%.9g%c", value, i + 1 < count ? ',' : '\n');
-    vs_tensorboard_scalar(&summary, column[i].tag, value);
+    if (isfinite(value)) fprintf(journal->progress, "%.9g", value); // what was not measured is an empty cell
+    fputc(i + 1 < count ? ',' : '\n', journal->progress);
+    if (isfinite(value)) vs_tensorboard_scalar(&summary, column[i].tag, value);
   }
   vs_tensorboard_event(&bytes, now_s(), (int64_t)report->transitions, &summary);
   vs_status s = flush(journal, journal->progress, err);

@@ -201,11 +201,18 @@ vs_status vs_train_sum_up(const vs_train *t, vs_rollout_stats *played, vs_ppo_st
   return s;
 }
 
+// Lately, against a kind of opponent; NaN where the mix has none or no episode ended.
+static double recent_score(const vs_league *league, vs_opponent_kind kind) {
+  for (int k = 0; k < league->def.shares; k++)
+    if (league->def.share[k].kind == kind && league->record[k].episodes > 0) return league->record[k].recent_score;
+  return NAN;
+}
+
 static void fill_report(const vs_train *t, const vs_reward_weights *weights, const vs_learner_stats *learnt,
                         vs_train_report *report) {
   const vs_rollout_stats *played = &t->rollout.stats;
   const vs_ppo_stats *ppo = &learnt->last;
-  double episodes = played->episodes > 0.0 ? played->episodes : 1.0;
+  double episodes = played->episodes > 0.0 ? played->episodes : NAN; // none ended: nothing was measured
   report->update = (double)t->updates;
   report->transitions = (double)t->transitions;
   report->wall_s = t->wall_s;
@@ -227,7 +234,9 @@ static void fill_report(const vs_train *t, const vs_reward_weights *weights, con
   report->goals_for = played->goals_for / episodes;
   report->goals_against = played->goals_against / episodes;
   const vs_league_window window = vs_league_results(&t->league);
-  report->frozen_score = vs_league_window_score(&window);
+  report->frozen_score = window.count > 0.0 && t->league.frozen >= 0 ? vs_league_window_score(&window) : NAN;
+  report->self_score = recent_score(&t->league, VS_OPPONENT_SELF);
+  report->pool_score = recent_score(&t->league, VS_OPPONENT_POOL);
   report->replacements = t->league.replacements;
   report->pool = 0;
   for (int i = 0; i < t->league.selves; i++) report->pool += t->league.self[i].in_pool;

@@ -42,6 +42,8 @@ static const vs_train_column columns[] = {
     COLUMN(frozen_score, "league"),
     COLUMN(replacements, "league"),
     COLUMN(pool, "league"),
+    COLUMN(self_score, "league"),
+    COLUMN(pool_score, "league"),
 };
 
 const vs_train_column *vs_train_columns(int *count) {

@@ -27,7 +27,7 @@ static void the_table_and_its_files_are_the_same_for_1_and_3_threads(void **stat
              1 + 2 * k, folder, k, folder, k);
     play(arguments);
     assert_non_null(strstr(run.out, "emc: as blue, 3 matches against each"));
-    assert_non_null(strstr(run.out, "sides are not swapped"));
+    assert_non_null(strstr(run.out, "colours are not swapped"));
     assert_non_null(strstr(run.out, "\nrandom: "));
     assert_non_null(strstr(run.out, "\nzero: "));
     snprintf(path, sizeof path, "%s/%d.json", folder, k);
@@ -50,6 +50,36 @@ static void a_round_robin_prints_cross_table_and_elo(void **state) {
   assert_non_null(strstr(run.out, "Elo"));
   // zero: against random: in 2 s: nobody scores, a cell of draws.
   assert_non_null(strstr(run.out, "0/100/0 +0.00"));
+}
+
+// EMC beats a team that stands still from either side; 4 matches of 2 in each colour, and no line is longer than 100.
+static void both_colours_count_together_under_the_names_given(void **state) {
+  (void)state;
+  play("eval --blue zero: --against emc: --swap --matches 2 --seconds 20 --drive planar --name Us --name Them");
+  char *row = strstr(run.out, "\nThem ");
+  assert_non_null(row);
+  assert_int_equal(atoi(row + 6), 4);
+  assert_non_null(strstr(row, "0 [0, 49]")); // no match of 4 won: Wilson
+  assert_non_null(strstr(run.out, "Us as blue, 2 matches against each, and as yellow"));
+  play("eval --matches 2 --seconds 1 --drive planar --against random:,inf:,emc22:");
+  for (char *line = run.out; *line; line += strcspn(line, "\n") + 1)
+    if (strcspn(line, "\n") > 100) fail_msg("too wide: %.*s", (int)strcspn(line, "\n"), line);
+  assert_refused("eval --round-robin emc:,inf: --swap", 2, "plays both colours");
+  assert_refused("eval --against emc: --name a --name b --name c", 2, "given 3 times for 2 players");
+}
+
+// The third match of a series has the hash that it has alone.
+static void one_match_of_a_series_is_played_again(void **state) {
+  (void)state;
+  char hash[32] = "";
+  play("sim --blue random: --yellow emc: --seconds 2 --drive planar --matches 3 --seed 18446744073709551615 --json");
+  char *third = run.out;
+  for (int i = 0; i < 3; i++) third = strstr(third + 1, "\"hash\": \"");
+  snprintf(hash, sizeof hash, "%.16s", third + 9);
+  play("sim --blue random: --yellow emc: --seconds 2 --drive planar --match 3 --seed 0xffffffffffffffff --name A");
+  if (!strstr(run.out, hash)) fail_msg("no %s in %s", hash, run.out);
+  assert_non_null(strstr(run.out, "match 3"));
+  assert_non_null(strstr(run.out, "A (blue) against emc:"));
 }
 
 static void an_interrupted_evaluation_prints_what_is_done(void **state) {
@@ -75,6 +105,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_table_and_its_files_are_the_same_for_1_and_3_threads),
       cmocka_unit_test(a_round_robin_prints_cross_table_and_elo),
+      cmocka_unit_test(both_colours_count_together_under_the_names_given),
+      cmocka_unit_test(one_match_of_a_series_is_played_again),
       cmocka_unit_test(an_interrupted_evaluation_prints_what_is_done),
       cmocka_unit_test(bad_requests_are_refused_before_any_match),
   };

@@ -61,7 +61,7 @@ static void a_run_leaves_checkpoint_policy_tables_and_continues(void **state) {
 static const char *outcome(const char *format) {
   content(format);
   char *end = strrchr(text, ',');
-  for (int column = 0; column < 20; column++) {
+  for (int column = 0; column < 22; column++) {
     while (*--end != ',') {
     }
   }

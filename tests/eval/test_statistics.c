@@ -35,6 +35,35 @@ static void interval_of_equal_values_is_a_point_and_of_none_is_nan(void **state)
   assert_true(isnan(vs_bootstrap(value, 0, 1).mean));
 }
 
+// By hand: 0 of 100 ends at z^2/(n + z^2) = 3.84146/103.84146; 60 of 100 at (0.6 + 0.0192073 +- 1.96 * sqrt(0.0024 +
+// 0.000096036))/1.0384146.
+static void interval_of_a_rate_has_a_width_at_its_ends(void **state) {
+  (void)state;
+  vs_estimate none = vs_rate(0, 100), all = vs_rate(100, 100), some = vs_rate(60, 100);
+  assert_near(none.low, 0.0, 0.0);
+  assert_near(none.high, 0.036994, 1e-6);
+  assert_near(all.low, 1.0 - 0.036994, 1e-6);
+  assert_near(all.high, 1.0, 0.0);
+  assert_near(some.mean, 0.6, 1e-12);
+  assert_near(some.low, 0.50200, 1e-4);
+  assert_near(some.high, 0.69060, 1e-4);
+  assert_true(isnan(vs_rate(0, 0).mean));
+}
+
+static void a_mirrored_match_is_the_other_teams(void **state) {
+  (void)state;
+  vs_match_result match = {.played = true, .score = {4, 1}, .idle_warnings = {3, 0}}, other, back;
+  match.events[VS_BLUE][VS_EVENT_PENALTY] = 2;
+  vs_match_mirror(&match, &other);
+  assert_int_equal(other.score[VS_BLUE], 1);
+  assert_int_equal(other.score[VS_YELLOW], 4);
+  assert_int_equal(other.events[VS_YELLOW][VS_EVENT_PENALTY], 2);
+  assert_int_equal(other.events[VS_BLUE][VS_EVENT_PENALTY], 0);
+  vs_match_mirror(&other, &back);
+  assert_memory_equal(back.score, match.score, sizeof match.score);
+  assert_memory_equal(back.events, match.events, sizeof match.events);
+}
+
 // 2:1, 0:0, 1:3, 5:0 and one match that was not finished.
 static void summary_counts_finished_matches_from_blues_side(void **state) {
   (void)state;
@@ -70,6 +99,8 @@ int main(void) {
       cmocka_unit_test(interval_of_a_rate_is_the_binomial_one),
       cmocka_unit_test(interval_of_skewed_goals_is_the_exact_one),
       cmocka_unit_test(interval_of_equal_values_is_a_point_and_of_none_is_nan),
+      cmocka_unit_test(interval_of_a_rate_has_a_width_at_its_ends),
+      cmocka_unit_test(a_mirrored_match_is_the_other_teams),
       cmocka_unit_test(summary_counts_finished_matches_from_blues_side),
   };
   return cmocka_run_group_tests_name("eval/statistics", tests, NULL, NULL);
