@@ -9,12 +9,14 @@
 #include "commands.h"
 #include "field_config.h"
 #include "vsss/calib.h"
+#include "vsss/calib_watch.h"
 #include "vsss/camera.h"
 #include "vsss/clock.h"
 #include "vsss/colours.h"
 #include "vsss/detect.h"
 #include "vsss/field.h"
 #include "vsss/frame_stream.h"
+#include "vsss/geom.h"
 #include "vsss/image.h"
 #include "vsss/paths.h"
 #include "vsss/tag.h"
@@ -268,6 +270,34 @@ static vs_status check_points(const request *r, vs_error *err) {
   return VS_OK;
 }
 
+// By the field's own lines, or its walls.
+static vs_status check_field(const request *r, vs_error *err) {
+  vs_calib c;
+  vs_camera *camera = NULL;
+  vs_calib_watch *watch = NULL;
+  vs_frame frame;
+  vs_status s = vs_calib_load(r->calib, &c, err);
+  if (s == VS_OK) s = settled_picture(r->camera, &camera, &frame, err);
+  if (s == VS_OK) s = vs_calib_check_size(&c, r->calib, frame.width, frame.height, err);
+  if (s == VS_OK) s = vs_calib_watch_new(&c, &watch, err);
+  vs_calib_watch_result found = {0};
+  if (s == VS_OK) found = vs_calib_watch_check(watch, &frame);
+  vs_calib_watch_free(watch);
+  vs_camera_close(camera);
+  if (s != VS_OK) return s;
+  if (!found.sure)
+    return vs_fail(err, VS_FAIL, "%s: neither lines nor walls of the field stand out: check with --points or --at",
+                   r->camera);
+  printf("by the field's %s: shifted %.0f, %.0f mm, turned %.1f degrees; %.0f mm at worst\n",
+         found.lines ? "lines" : "walls", 1000 * found.x_m, 1000 * found.y_m, found.turn_rad * 180 / VS_PI,
+         found.error_mm);
+  double allowed_mm = fmax(r->tolerance_mm, VS_CALIB_WATCH_WARN_MM);
+  if (found.error_mm > allowed_mm)
+    return vs_fail(err, VS_FAIL, "%s: %.0f mm at worst, %.0f are allowed: the camera has moved, calibrate anew",
+                   r->calib, found.error_mm, allowed_mm);
+  return VS_OK;
+}
+
 // Tags laid on marked points.
 typedef struct mark {
   int id, seen;
@@ -348,6 +378,7 @@ static vs_status act(const request *r, vs_error *err) {
     return vs_fail(err, VS_USAGE, "a check needs --calib FILE, the calibration to be checked");
   if (r->at.count) return check_tags(r, err);
   if (r->points) return r->check ? check_points(r, err) : from_points(r, err);
+  if (r->check && r->camera) return check_field(r, err);
   return vs_fail(err, VS_USAGE,
                  "nothing to do: give --points, --checkerboard, --colours, --snapshot, --at or --print-tags");
 }
@@ -367,7 +398,8 @@ int cmd_calibrate(int argc, char **argv) {
       {"height-m", VS_FLAG_REAL, &r.height_m, "H", "instead of --calib: the lens over the floor, by tape", 0.3, 20},
       {"size", VS_FLAG_TEXT, &r.size, "WxH", "size of the picture where no camera tells it", 0, 0},
       {"out", VS_FLAG_TEXT, &r.out, "FILE", "write the calibration (or the sheet of tags)", 0, 0},
-      {"check", VS_FLAG_SWITCH, &r.check, NULL, "only print how far --calib is off at the points", 0, 0},
+      {"check", VS_FLAG_SWITCH, &r.check, NULL,
+       "only print how far --calib is off: at --points, at --at, or by the field's lines", 0, 0},
       {"at", VS_FLAG_LIST, &r.at, "ID=X,Y", "check with a tag laid on a point, metres (repeat it)", 0, 0},
       {"tag-height-mm", VS_FLAG_REAL, &r.tag_height_mm, "H", "height of those tags over the floor", 0, 300},
       {"tolerance-mm", VS_FLAG_REAL, &r.tolerance_mm, "MM", "a check that is off by more fails", 0.01, 1000},

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "eyes.h"
+#include "moved.h"
 #include "tap.h"
 #include "vsss/clock.h"
 #include "vsss/control.h"
@@ -19,6 +20,7 @@ struct vs_field {
   vs_eyes eyes;
   vs_calib calib;
   vs_detector *detector;
+  vs_moved moved; // whether the camera did
   vs_tracker tracker;
   vs_control *control[2]; // the policy's and the fallback's (NULL: none)
   int plays;              // which of them
@@ -89,6 +91,7 @@ static vs_status open_eyes(vs_field *f, char *note, size_t note_size, vs_error *
   if (*info->note) add_note(note, note_size, info->note);
   s = get_calib(f, note, note_size, err);
   if (s != VS_OK) return s;
+  if (f->def.calib && (s = vs_moved_open(&f->moved, &f->calib, err)) != VS_OK) return s;
   f->def.detector.adversary = f->def.team == VS_BLUE ? VS_YELLOW : VS_BLUE;
   f->def.detector.px_per_m = vs_calib_px_per_m(&f->calib, f->def.tracker.tag_height_m);
   f->def.tracker.team = f->def.team;
@@ -137,6 +140,7 @@ void vs_field_free(vs_field *f) {
   vs_tap_close(&f->tap);
   vs_detector_free(f->detector);
   for (int i = 0; i < 2; i++) vs_control_free(f->control[i]);
+  vs_moved_close(&f->moved);
   vs_eyes_close(&f->eyes);
   free(f);
 }
@@ -280,6 +284,8 @@ static void play(vs_field *f, const vs_frame *frame, vs_field_tick_result *r) {
   publish(f, frame, r);
   publish_slowly(f);
   mark(f, VS_STAGE_PUBLISH);
+  const char *moved = vs_moved_look(&f->moved, frame); // after all that a wheel waits for
+  if (moved) r->said = moved;
 }
 
 static int64_t period_us(const vs_field *f) {
