@@ -1,6 +1,6 @@
 // Pixels <-> metres. A pinhole camera with OpenCV's five distortion coefficients and a pose over the field. A pixel
 // becomes a field point by intersecting its ray with the plane z = h, which corrects parallax: 37 mm for a tag at 80 mm
-// in a corner under a camera at 2.2 m (field.md 1.4). Plain C at run time; only the solvers need OpenCV.
+// in a corner under a camera at 2.2 m (field.md, Height). Plain C at run time; only the solvers need OpenCV.
 #ifndef VSSS_CALIB_H
 #define VSSS_CALIB_H
 
@@ -63,7 +63,7 @@ double vs_calib_error_mm(const vs_calib *calib, const vs_calib_point *point);
 vs_status vs_calib_solve_pose(vs_calib *calib, const vs_calib_point *points, int count, vs_error *err);
 
 // The same without a measured lens: no distortion, and the focal length that puts the lens height_m over the floor, as
-// a tape measure says (2 cm wrong there are 0.25 mm at 8 cm height, field.md 1.4). calib needs its size only.
+// a tape measure says (2 cm wrong there are 0.25 mm at 8 cm height, field.md, Height). calib needs its size only.
 vs_status vs_calib_solve_from_height(vs_calib *calib, const vs_calib_point *points, int count, double height_m,
                                      vs_error *err);
 

@@ -31,7 +31,7 @@ typedef struct vs_frame {
 typedef struct vs_camera_def {
   int width, height;  // asked for; a file has its own. 0: the device's best of 1280x720 and 640x480
   double fps;         // asked for; pace of a folder of images. 0: device 60, folder 30
-  double exposure_ms; // manual exposure asked for, 0: leave it alone. Above 5 ms tags blur (field.md 0.7)
+  double exposure_ms; // manual exposure asked for, 0: leave it alone. Above 5 ms tags blur (field.md, Tags)
   bool every_frame;   // recordings: each frame once, as fast as it is read, instead of at its own pace, newest first
 } vs_camera_def;
 vs_camera_def vs_camera_def_default(void); // 0, 0, 0, 4 ms, false

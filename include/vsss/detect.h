@@ -20,7 +20,7 @@ typedef struct vs_tag {
   vs_mark kind;
   int id;
   int hamming;            // bits corrected
-  double margin;          // contrast of the decoded bits, 0..255; real tags > 100, phantoms < 5 (field.md 1.5)
+  double margin;          // contrast of the decoded bits, 0..255; real tags > 100, phantoms < 5 (field.md, Tags)
   double centre_px[2];    // x, y
   double corner_px[4][2]; // of the tag's border: bottom left, bottom right, top right, top left of the printed pattern
 } vs_tag;
@@ -31,8 +31,8 @@ typedef struct vs_tag_def {
   double decimate;          // tags are searched in a picture smaller by this; 1 finds the smallest
   double blur_px;           // Gaussian before the search; 0
   double sharpening;        // of the decoded bits; 0.25
-  int min_white_black_diff; // 40 on the field: 5 to 14 times faster than libapriltag's 5 (field.md 0.6)
-  int bits_corrected;       // 1: 2 costs 175 MB and 99 ms (field.md 1.2)
+  int min_white_black_diff; // 40 on the field: 5 to 14 times faster than libapriltag's 5 (field.md, Tags)
+  int bits_corrected;       // 1: 2 costs 175 MB and 99 ms (field.md, Tags)
   int max_hamming;          // accepted: 1
   double min_margin;        // accepted: 40
   // Of family VS_TAG_ARUCO only:

@@ -1,7 +1,7 @@
 // Stable: part of libvsss (deploy/docs/library.md).
 //
 // What a team's camera and radio make of the true world: noise, delay, lost detections; and what its radio makes of
-// commands. Default: the paper's noise, nothing else. Ranges: field.md 6.3, deploy/config/realism.ini.
+// commands. Default: the paper's noise, nothing else. Ranges: field.md, Ranges, deploy/config/realism.ini.
 #ifndef VSSS_SENSOR_MODEL_H
 #define VSSS_SENSOR_MODEL_H
 

@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-// Side of the printed paper on the 80 mm cap, all cells (field.md 1.2). The top edge of the pattern shows to the front.
+// Side of the printed paper on the 80 mm cap, all cells (field.md, Tags). The top edge of the pattern shows to the front.
 #define VS_TAG_PAPER_M   0.078
 #define VS_TAG_FAMILY    "tagStandard41h12"
 #define VS_TAG_MAX_CELLS 12 // a side of the largest family, white margin included

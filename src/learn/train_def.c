@@ -76,7 +76,7 @@ void vs_train_def_before(vs_train_def *def) {
   without_levers(def);
 }
 
-// Paper, Table 2 and section VII; what the paper leaves open is marked + or * in the design notes (paper.md): Adam's
+// Paper, Table 2 and section VII; what the paper leaves open is marked + or * in paper.md: Adam's
 // epsilon, value clipping, gradient norm, entropy and value weights, minibatches, layer sizes.
 static vs_train_def paper(void) {
   vs_train_def def = vs_train_def_default();

@@ -12,7 +12,7 @@
 // About its axle: 12 g disc of 3 cm, 5.4e-6, and a geared rotor of 2e-5.
 #define ROTOR_INERTIA_KGM2 2e-5
 #define WHEEL_INERTIA_KGM2 (5.4e-6 + ROTOR_INERTIA_KGM2)
-#define WHEEL_FRICTION     0.9 // rubber on a matte board, field.md 6.3
+#define WHEEL_FRICTION     0.9 // rubber on a matte board, field.md, Ranges
 // Both skids are this far from the axle; they carry what acceleration takes off the wheels.
 #define SKID_DISTANCE_M 0.033
 #define COM_HEIGHT_M    0.0348 // Table 1: block from 0.5 to 6.5 cm, axles at 3 cm
@@ -22,7 +22,7 @@
 #define BALL_ROLLING_M         6.1e-4 // rolling: 5/7 g times this over the radius
 #define BALL_DECELERATION_MPS2 0.20
 
-// sat(command) * gain, nothing inside the dead zone (field.md 6.3).
+// sat(command) * gain, nothing inside the dead zone (field.md, Ranges).
 double vs_drive_target(const vs_sim_params *params, int robot, int side, double command_radps);
 
 // Once a step, before mj_step: motors one step on, and their effect into ctrl (contact) or qfrc_applied (planar).

@@ -1,4 +1,4 @@
-// The ranges of field.md 6.3: default, reading them from an INI file, drawing one episode from them.
+// The ranges of field.md, Ranges: default, reading them from an INI file, drawing one episode from them.
 #include "vsss/sensor_model.h"
 
 #include <stddef.h>

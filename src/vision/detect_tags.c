@@ -135,7 +135,7 @@ vs_status vs_tag_detector_new(const vs_tag_def *def, vs_tag_detector **out, vs_e
     vs_tag_detector_free(d);
     return s;
   }
-  d->detector->nthreads = 1; // two are slower, and race (field.md 1.2)
+  d->detector->nthreads = 1; // two are slower, and race (field.md, Tags)
   // The light margin of an ArUco mark is half a cell: a coarser search does not see it.
   d->detector->quad_decimate = d->aruco ? 1.0f : (float)def->decimate;
   d->detector->quad_sigma = (float)def->blur_px;

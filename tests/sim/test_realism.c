@@ -32,7 +32,7 @@ static void default_is_the_papers_noise_only(void **state) {
   assert_memory_equal(&drawn, &nominal, sizeof drawn);
 }
 
-// Field.md 6.3, the rows that it calls most valuable, and two others.
+// field.md, Ranges, the rows that it calls most valuable, and two others.
 static void shipped_file_has_the_fields_ranges(void **state) {
   (void)state;
   char path[512];

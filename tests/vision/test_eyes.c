@@ -80,7 +80,7 @@ static void poses_at_640x480_are_within_2_mm_and_1_degree_of_the_truth(void **st
   scene_free(&s);
 }
 
-// Motion during the exposure: 8 mm is 2 ms at full speed and what tags bear (field.md 0.7); colours bear more.
+// Motion during the exposure: 8 mm is 2 ms at full speed and what tags bear (field.md, Tags); colours bear more.
 // LARC 2026: ArUco marks of 70 mm on both teams, the adversaries' headings with them.
 static void the_league_s_marks_of_both_teams_are_within_2_mm_and_1_degree_of_the_truth(void **state) {
   (void)state;
