@@ -1,6 +1,6 @@
 """Speed of the Python package: "bench NAME VALUE UNIT", medians. Run by tests/bench/python.sh.
 
-bench_python.py [what...]: overhead, envs; sb3 (needs Stable-Baselines3; [--seconds 30])
+bench_python.py [what...]: overhead, envs; sb3 (needs Stable-Baselines3; [--seconds 30] [--sb3 which])
 """
 
 import argparse
@@ -107,8 +107,9 @@ def envs():
     say("parallel_env_steps", rate(round_of_six, 6), "transitions/s")
 
 
-def sb3(seconds):
-    """PPO as in the peers' script (2048 transitions an update, 10 epochs, 64-64), on VSS-v0 and on matches."""
+def sb3(seconds, which=""):
+    """PPO on VSS-v0 as in the peers' script (2048 transitions an update, 64-64; batches of 64 in 10 epochs, or of 512 in 4,
+    where the learner does not take it all) and on matches."""
     import torch
     from stable_baselines3 import PPO
     from stable_baselines3.common.callbacks import BaseCallback
@@ -145,19 +146,23 @@ def sb3(seconds):
         say(f"sb3_{name}_rollout", done / share.rollout_s, "transitions/s")
         env.close()
 
-    learn("vss_v0_as_peers", vsss.VSSVectorEnv(64, 1), 32, 64, 10)
-    learn("vss_v0_large_batch", vsss.VSSVectorEnv(64, 1), 128, 2048, 4)
-    learn("matches_large_batch", vsss.make_vec(32, 1, opponent="zero:", observation="frame"), 64, 2048, 4)
+    if which in ("", "vss_v0_as_peers"):
+        learn("vss_v0_as_peers", vsss.VSSVectorEnv(64, 1), 32, 64, 10)
+    if which in ("", "vss_v0_batch_512"):
+        learn("vss_v0_batch_512", vsss.VSSVectorEnv(64, 1), 32, 512, 4)
+    if which in ("", "matches"):
+        learn("matches", vsss.make_vec(32, 1, opponent="zero:", observation="frame"), 64, 2048, 4)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("what", nargs="*", default=["overhead", "envs"])
     parser.add_argument("--seconds", type=float, default=30)
+    parser.add_argument("--sb3", default="", help="vss_v0_as_peers, vss_v0_batch_512 or matches alone")
     arguments = parser.parse_args()
     for what in arguments.what:
         if what == "sb3":
-            sb3(arguments.seconds)
+            sb3(arguments.seconds, arguments.sb3)
         else:
             {"overhead": overhead, "envs": envs}[what]()
 

@@ -102,15 +102,31 @@ ours_python() { # NAME of the environment of a peer, what...
 }
 compare_python() {
   ours="$ours
-$(ours_python sb3 envs sb3)"
+$(ours_python sb3 envs)"
   compare python_vss_v0/rsoccer_vss_v0 "$(our python_vss_v0_steps)" "$(run rsoccer bench_rsoccer_gym.py steps_per_s --api gym --seconds 8)" "steps of 25 ms/s"
   psim_rate=$(run psim bench_psim.py steps_per_s --env zoo --seconds 8)
   compare python_parallel_env/psim_environment "$(our python_parallel_env_steps)" "$(echo "$psim_rate" | awk '{print $1 * 6}')" "robots' transitions/s, theirs 1/60 s, ours 1/10 s"
   compare python_vec_64_both/envpool_soccer "$(our python_vec_64_both_steps)" "$(run envpool bench_envpool_soccer.py player_transitions_per_s)" "players' transitions/s, theirs 25 ms, ours 100 ms"
   sb3_rsoccer=$(run sb3 bench_sb3_rsoccer.py transitions_per_s --seconds 30)
-  for how in vss_v0_as_peers vss_v0_large_batch matches_large_batch; do
-    compare "python_sb3_$how/sb3_rsoccer" "$(our "python_sb3_$how")" "$sb3_rsoccer" "transitions/s; our learner takes $(our "python_sb3_${how}_learner") % of the time"
-  done
+  # In turns, since other work on the machine comes and goes; medians.
+  sb3_in_turns vss_v0_as_peers
+  sb3_in_turns vss_v0_batch_512 --batch 512 --epochs 4
+  sb3_in_turns matches --batch 512 --epochs 4
+}
+
+median() { sort -n | awk '{v[NR] = $1} END {if (NR) print v[int((NR + 1) / 2)]}'; }
+
+# which of bench_python.py, arguments of the peers' script
+sb3_in_turns() {
+  how=$1
+  shift
+  for turn in 1 2 3; do
+    ours_python sb3 sb3 --sb3 "$how" --seconds 10
+    theirs=$(run sb3 bench_sb3_rsoccer.py transitions_per_s --seconds 10 "$@") && echo "bench theirs $theirs turn $turn"
+  done >"$scratch/turns"
+  compare "python_sb3_$how/sb3_rsoccer" "$(awk -v n="python_sb3_$how" '$2 == n {print $3}' "$scratch/turns" | median)" \
+    "$(awk '$2 == "theirs" {print $3}' "$scratch/turns" | median)" \
+    "transitions/s; our learner takes $(awk -v n="python_sb3_${how}_learner" '$2 == n {print $3}' "$scratch/turns" | median) % of the time"
 }
 
 [ "${2:-}" = --python ] || compare_core

@@ -158,6 +158,13 @@ class RefusedTest(unittest.TestCase):
             with self.assertRaises(vsss.Error) as caught:
                 env.step(np.zeros((6, 2)))
             self.assertIn(expected, str(caught.exception.__cause__))
+        def interrupt(world, dt_s):
+            raise KeyboardInterrupt
+
+        env = small(opponent=vsss.strategy(interrupt))
+        env.reset(seed=1)
+        with self.assertRaises(KeyboardInterrupt):
+            env.step(np.zeros((6, 2)))
         with self.assertRaises(vsss.UsageError):
             vsss.strategy("emc:")
         env = small(opponent=lambda observation: np.zeros((1, 2)))

@@ -180,6 +180,8 @@ pending: List[BaseException] = []  # raised in a function that the library calle
 def raise_status(status: int, text: str) -> None:
     cause = pending.pop() if pending else None
     pending.clear()
+    if cause is not None and not isinstance(cause, Exception):
+        raise cause  # an interrupt, say
     kind = UsageError if status == _USAGE else Error
     raise kind(text) from cause
 
