@@ -34,11 +34,15 @@ class EvaluationTest(unittest.TestCase):
             )
             report = json.loads(out.read_text())
         ours = vsss.evaluate("emc:", "inf:", 5, episode_s=20, placement="random", seed=3, drive="planar", slots=2)
-        text = json.dumps(report)
-        matches = next(v for v in _lists(report) if v and isinstance(v[0], dict) and "seed" in v[0])
-        self.assertEqual([list(m["score"]) for m in matches], ours.scores.tolist(), text)
-        self.assertAlmostEqual(ours.goals_for, np.mean([m["score"][0] for m in matches]))
-        self.assertAlmostEqual(ours.win + ours.draw + ours.loss, 1)
+        (series,) = report["series"]
+        self.assertEqual([m["score"] for m in series["matches"]], ours.scores.tolist())
+        for name, theirs in series["summary"].items():
+            if isinstance(theirs, dict):
+                self.assertAlmostEqual(getattr(ours, name), theirs["mean"], 6, name)
+                self.assertAlmostEqual(ours.interval[name][0], theirs["low"], 6, name)
+                self.assertAlmostEqual(ours.interval[name][1], theirs["high"], 6, name)
+            else:
+                self.assertAlmostEqual(getattr(ours, name), theirs, 4, name)
         self.assertIn("5 matches against inf:", str(ours))
 
     def test_a_strategy_plays_either_side(self):
@@ -93,13 +97,6 @@ class EvaluationTest(unittest.TestCase):
             self.skipTest("onnxruntime before 1.20: the library's onnx: wants a newer one; Policy() itself was tested")
         player = vsss.evaluate(policy, "random:", 2, episode_s=20, drive="planar")
         self.assertAlmostEqual(function.score, player.score, delta=1.01)  # batches of other sizes round otherwise
-
-
-def _lists(value):
-    if isinstance(value, list):
-        yield value
-    for inner in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
-        yield from _lists(inner)
 
 
 if __name__ == "__main__":
