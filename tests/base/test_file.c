@@ -1,4 +1,5 @@
 // src/base/file.c
+#define _GNU_SOURCE // syscall
 #include "vsss/file.h"
 
 #include <signal.h>
@@ -6,9 +7,24 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include "assert_near.h"
 #include "test_folder.h"
+
+// Stand before the C library's, and note what they are asked for.
+static int synced;           // since the last rename
+static int renamed_unsynced; // files put in place before they were on the disk
+int fsync(int file) {
+  synced++;
+  return (int)syscall(SYS_fsync, file);
+}
+int rename(const char *from, const char *to) {
+  renamed_unsynced += synced == 0;
+  synced = 0;
+  return (int)syscall(SYS_renameat2, -100 /* AT_FDCWD */, from, -100, to, 0);
+}
 
 static char *text_of(const char *path, char *out, size_t size) {
   FILE *file = fopen(path, "r");
@@ -56,6 +72,16 @@ static void a_write_that_fails_keeps_the_old_file_and_names_it(void **state) {
   assert_int_not_equal(stat(beside, &about), 0);
 }
 
+static void a_file_is_on_the_disk_before_it_takes_the_others_place(void **state) {
+  (void)state;
+  char path[128];
+  vs_error err = {0};
+  snprintf(path, sizeof path, "%s/synced", folder);
+  renamed_unsynced = 0;
+  for (int i = 0; i < 3; i++) assert_int_equal(vs_file_replace(path, "text", 4, &err), VS_OK);
+  assert_int_equal(renamed_unsynced, 0);
+}
+
 static void a_folder_that_is_not_there_is_an_error(void **state) {
   (void)state;
   char path[128];
@@ -69,6 +95,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_file_is_replaced_whole_and_nothing_is_left_beside_it),
       cmocka_unit_test(a_write_that_fails_keeps_the_old_file_and_names_it),
+      cmocka_unit_test(a_file_is_on_the_disk_before_it_takes_the_others_place),
       cmocka_unit_test(a_folder_that_is_not_there_is_an_error),
   };
   return cmocka_run_group_tests_name("base/file", tests, make_folder, remove_folder);

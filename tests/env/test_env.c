@@ -55,6 +55,43 @@ static void same_seed_gives_the_same_match_and_another_seed_another(void **state
   model = planar;
 }
 
+// Two random players of one match draw from streams of their own.
+static void both_teams_players_have_seeds_of_their_own(void **state) {
+  (void)state;
+  vs_env *env = new_env("random:", "random:");
+  for (uint64_t seed = 0; seed < 20; seed++) {
+    assert_ok(vs_env_reset(env, seed, err));
+    play_frames(env, 1);
+    vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE];
+    vs_env_wheels(env, wheels);
+    assert_true(memcmp(wheels[VS_BLUE], wheels[VS_YELLOW], sizeof wheels[VS_BLUE]) != 0);
+  }
+  vs_env_free(env);
+}
+
+// League rules, halves of one second: after the whistle the ball is back in the middle, at rest.
+static void half_time_puts_everything_back(void **state) {
+  (void)state;
+  vs_env_def def = vs_env_def_default(model);
+  def.player[VS_BLUE] = def.player[VS_YELLOW] = "zero:";
+  def.referee = vs_referee_def_default(VS_RULES_LEAGUE);
+  def.referee.duration_s = 2;
+  vs_env *env = NULL;
+  assert_ok(vs_env_new(&def, &env, err));
+  assert_ok(vs_env_reset(env, 1, err));
+  put_ball(env, 0.3, 0.2);
+  vs_event event = {.kind = VS_EVENT_NONE};
+  while (event.kind != VS_EVENT_HALF_TIME) {
+    assert_false(vs_env_over(env));
+    assert_ok(vs_env_frame(env, &event, err));
+  }
+  vs_world world;
+  vs_env_truth(env, &world);
+  assert_near(world.ball.x_m, 0.0, 1e-9);
+  assert_near(world.ball.y_m, 0.0, 1e-9);
+  vs_env_free(env);
+}
+
 // A player that writes down when it was called.
 static struct {
   int calls;
@@ -363,6 +400,8 @@ static void the_still_balls_clock_is_drawn_for_each_episode(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(both_teams_players_have_seeds_of_their_own),
+      cmocka_unit_test(half_time_puts_everything_back),
       cmocka_unit_test(same_seed_gives_the_same_match_and_another_seed_another),
       cmocka_unit_test(players_are_called_at_their_own_rate_with_its_dt),
       cmocka_unit_test(a_step_is_three_frames_and_observes_what_it_measured),

@@ -293,6 +293,26 @@ static void no_random_placement_is_at_once_whistled_again(void **state) {
   }
 }
 
+// 10 to 30 cm from the ball, and both ends are reached.
+static void a_random_kicker_stands_10_to_30_cm_behind_the_ball(void **state) {
+  (void)state;
+  vs_rng rng = vs_rng_make(21, 0);
+  double nearest = 1.0, farthest = 0.0;
+  for (int n = 0; n < 3000; n++) {
+    vs_world w = placed(VS_PLACEMENT_RANDOM, VS_EVENT_PENALTY, VS_BLUE, 0, &rng);
+    double of_this = 2.0;
+    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+      const vs_pose *p = &w.robot[VS_BLUE][i].pose;
+      if (p->x_m > 0)
+        of_this = hypot(p->x_m - w.ball.x_m, p->y_m - w.ball.y_m); // the kicker alone is beyond the middle
+    }
+    nearest = fmin(nearest, of_this);
+    farthest = fmax(farthest, of_this);
+  }
+  assert_true(nearest >= 0.1 - 1e-9 && nearest < 0.105);
+  assert_true(farthest <= 0.3 + 1e-9 && farthest > 0.295);
+}
+
 static void random_roles_and_headings_are_all_drawn_and_depend_on_the_seed_alone(void **state) {
   (void)state;
   int kicker[VS_TEAM_SIZE] = {0}, eighth[8] = {0};
@@ -385,6 +405,7 @@ int main(void) {
       cmocka_unit_test(ten_thousand_random_placements_are_legal),
       cmocka_unit_test(open_play_is_legal_and_a_third_of_it_at_the_walls),
       cmocka_unit_test(no_random_placement_is_at_once_whistled_again),
+      cmocka_unit_test(a_random_kicker_stands_10_to_30_cm_behind_the_ball),
       cmocka_unit_test(random_roles_and_headings_are_all_drawn_and_depend_on_the_seed_alone),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -71,6 +71,9 @@ static void distance_is_the_nearest_team_mates_for_all(void **state) {
   // Robot 2 is 0.4 m away, robot 0 0.5 m, robot 1 root(1 + 0.4225) = 1.19 m.
   for (int i = 0; i < VS_TEAM_SIZE; i++) assert_near(term(&w, &w, i, VS_REWARD_DISTANCE), -0.4, 1e-12);
   assert_near(term(&w, &w, 0, VS_REWARD_OWN_DISTANCE), -0.5, 1e-12);
+  vs_world before = w; // what counts is where the ball is now, not where it was
+  before.ball.x_m += 0.2;
+  assert_near(term(&before, &w, 0, VS_REWARD_OWN_DISTANCE), -0.5, 1e-12);
   assert_near(term(&w, &w, 1, VS_REWARD_OWN_DISTANCE), -1, 0); // capped
   assert_near(term(&w, &w, 2, VS_REWARD_OWN_DISTANCE), -0.4, 1e-12);
   for (int i = 0; i < VS_TEAM_SIZE; i++) w.robot[VS_OWN][i].pose = (vs_pose){-0.75, 0.65, 0};
