@@ -208,6 +208,7 @@ class ProcessTest(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout)
         for line in ("after the fork", "own plays", "status 0"):
             self.assertIn(line, done.stdout)
+        self.assertEqual(len(done.stdout.splitlines()), 3, done.stdout)
 
     def test_an_end_without_close_and_a_collected_environment(self):
         done = self.python(

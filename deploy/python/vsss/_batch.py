@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import os
 from typing import Any, Dict, Optional, Sequence, Tuple, Union
 
 import gymnasium
@@ -23,6 +24,7 @@ class Batch:
 
     def __init__(self, kind: str, settings: Dict[str, Any]) -> None:
         self.kind = kind
+        self._pid = os.getpid()
         self.handle: Optional[ctypes.c_void_p] = None
         handle = ctypes.c_void_p()
         texts = lib.setting_texts(settings)
@@ -156,13 +158,14 @@ class Batch:
         handle = self.handle
         if handle is None:
             return
-        lib.call(self.kind + "_free", handle)
+        if os.getpid() == self._pid:  # a fork leaves it alone: its threads are the parent's
+            lib.call(self.kind + "_free", handle)
         self.handle = None
 
     def __del__(self) -> None:
         try:
             self.close()
-        except Exception:  # in a fork the handle is left alone
+        except Exception:  # a call is at work on it
             pass
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import http.server
+import os
 import struct
 import sys
 import threading
@@ -25,6 +26,7 @@ class Camera:
         handle = ctypes.c_void_p()
         lib.call("render_new", width_px, height_px, title.encode() if title else None, ctypes.byref(handle))
         self.handle: Optional[ctypes.c_void_p] = handle
+        self._pid = os.getpid()
         self.shape = (height_px, width_px, 3)
 
     def picture(self, batch: Any, env: int) -> np.ndarray:
@@ -33,9 +35,9 @@ class Camera:
         return rgb
 
     def close(self) -> None:
-        if self.handle is not None:
+        if self.handle is not None and os.getpid() == self._pid:
             lib.call("render_free", self.handle)
-            self.handle = None
+        self.handle = None
 
 
 def png(rgb: np.ndarray) -> bytes:
