@@ -57,6 +57,7 @@ void vs_hosted_begin(vs_hosted *match);                            // ends VS_PH
 
 // One frame of 1 / frame_hz. VS_FAIL: a local player or the simulator broke.
 vs_status vs_hosted_frame(vs_hosted *match, vs_hosted_said *said, vs_error *err);
+int vs_hosted_broken(const vs_hosted *match); // the team whose local player broke; -1: none
 
 const vs_world *vs_hosted_world(const vs_hosted *match); // the truth; everybody sees it
 const vs_game *vs_hosted_game(const vs_hosted *match);

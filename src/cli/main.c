@@ -21,6 +21,7 @@ static const command commands[] = {
     {"field", cmd_field, "play on a real field: camera, policy, radio"},
     {"rig", cmd_rig, "a venue without hardware, for field to play in"},
     {"serve", cmd_serve, "teams' own programs play here, over the simulation league's network"},
+    {"league", cmd_league, "clubs play each other: players and teams' own programs; table, page, logs"},
     {"train", cmd_train, "learn by self-play; writes a policy as ONNX"},
     {"bridge", cmd_bridge, "carry wheel commands from LCM to the radio, and telemetry back"},
     {"plot", cmd_plot, "figures of a training run"},

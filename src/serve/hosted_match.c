@@ -23,6 +23,7 @@ struct vs_hosted {
   vs_hosted_said said; // gathered for the next frame
   double phase_s;      // spent in this phase
   double frame_s;      // 1 / frame_hz
+  int broken;          // the team whose player failed; -1: none
   bool goal_seen;      // without our referee: this goal is counted
   uint64_t hash;
   int64_t silent_frames[VS_TEAMS];
@@ -58,6 +59,7 @@ vs_status vs_hosted_new(const vs_hosted_def *def, vs_hosted **out, vs_error *err
   m->def = *def;
   m->frame_s = 1.0 / vs_model_frame_hz(def->model);
   m->hash = VS_HASH_START;
+  m->broken = -1;
   m->rng = vs_rng_make(def->seed, SEED_PLACEMENT);
   vs_status s = vs_referee_init(&m->referee, &def->referee, err);
   if (s == VS_OK) s = vs_sim_new(def->model, &m->sim, err);
@@ -256,6 +258,7 @@ static vs_status decide(vs_hosted *m, vs_error *err) {
     vs_status s =
         vs_control_step(m->control[t], (vs_team)t, &m->truth, &m->referee.game, m->frame_s, m->wheels[t], NULL, err);
     if (s != VS_OK) {
+      m->broken = t;
       vs_fail_prefix(err, "%s", vs_team_name((vs_team)t));
       return s;
     }
@@ -286,6 +289,7 @@ const vs_world *vs_hosted_world(const vs_hosted *m) { return &m->truth; }
 const vs_game *vs_hosted_game(const vs_hosted *m) { return &m->referee.game; }
 vs_phase vs_hosted_phase(const vs_hosted *m) { return m->phase; }
 const vs_ref_command *vs_hosted_call(const vs_hosted *m) { return &m->call; }
+int vs_hosted_broken(const vs_hosted *m) { return m->broken; }
 uint64_t vs_hosted_hash(const vs_hosted *m) { return m->hash; }
 void vs_hosted_wheels(const vs_hosted *m, vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]) {
   memcpy(out, m->wheels, sizeof m->wheels);

@@ -1,0 +1,74 @@
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "league.h"
+#include "vsss/config.h"
+
+enum { OWN_KEYS = 14, CLUB_KEYS = 3 };
+
+static vs_status check(const char *path, league_file *f, vs_error *err) {
+  int n = 0;
+  for (int i = 0; i < LEAGUE_CLUBS; i++) {
+    const league_club *c = &f->club[i];
+    if (!*c->name && !*c->player && !*c->command) continue;
+    if (!*c->name) return vs_fail(err, VS_USAGE, "%s: [club%d] has no name", path, i + 1);
+    for (const char *at = c->name; *at; at++)
+      if (!isalnum((unsigned char)*at) && !strchr(" ._-+", *at))
+        return vs_fail(err, VS_USAGE, "%s: [club%d] name = %s: letters, digits, spaces and . _ - + make a name", path,
+                       i + 1, c->name);
+    if (!*c->player == !*c->command)
+      return vs_fail(err, VS_USAGE, "%s: [club%d] %s: give either player (a URI) or command (a program)", path, i + 1,
+                     c->name);
+    for (int k = 0; k < n; k++)
+      if (!strcmp(f->club[k].name, c->name))
+        return vs_fail(err, VS_USAGE, "%s: [club%d] name = %s: another club has it", path, i + 1, c->name);
+    f->club[n++] = *c;
+  }
+  f->clubs = n;
+  return n >= 2 ? VS_OK : vs_fail(err, VS_USAGE, "%s: %d club: a league has at least 2, [club1] and [club2]", path, n);
+}
+
+vs_status league_file_load(const char *path, league_file *f, vs_error *err) {
+  *f = (league_file){.rounds = 1,
+                     .seconds = 600,
+                     .pause_s = 1,
+                     .wait_s = 20,
+                     .silence_s = 10,
+                     .rules = "league",
+                     .dialect = "firasim",
+                     .robot = "",
+                     .drive = "contact",
+                     .folder = "league",
+                     .record = true,
+                     .seed = 1};
+  vs_config_key schema[OWN_KEYS + LEAGUE_CLUBS * CLUB_KEYS + 1] = {
+      {"league.rounds", VS_CONFIG_INT, &f->rounds, 0, 1, 100, "each pair meets so often, from both sides each time"},
+      {"league.seconds", VS_CONFIG_REAL, &f->seconds, 0, 1, 7200, "of a match"},
+      {"league.pause", VS_CONFIG_REAL, &f->pause_s, 0, 0, 60, "from a call to the placing, and from there to play"},
+      {"league.wait", VS_CONFIG_REAL, &f->wait_s, 0, 0.1, 600, "for a club's program to be heard"},
+      {"league.silence", VS_CONFIG_REAL, &f->silence_s, 0, 0.5, 600, "in all, after which a club has lost"},
+      {"league.rules", VS_CONFIG_TEXT, f->rules, sizeof f->rules, 0, 0, "as --rules"},
+      {"league.dialect", VS_CONFIG_TEXT, f->dialect, sizeof f->dialect, 0, 0, "firasim or travesim"},
+      {"league.robot", VS_CONFIG_TEXT, f->robot, sizeof f->robot, 0, 0, "default: the dialect's"},
+      {"league.drive", VS_CONFIG_TEXT, f->drive, sizeof f->drive, 0, 0, "contact or planar"},
+      {"league.folder", VS_CONFIG_TEXT, f->folder, sizeof f->folder, 0, 0, "of results and logs"},
+      {"league.ports", VS_CONFIG_TEXT, f->ports, sizeof f->ports, 0, 0, "as --ports"},
+      {"league.realtime", VS_CONFIG_BOOL, &f->realtime, 0, 0, 0, "instead of as fast as the clubs answer"},
+      {"league.record", VS_CONFIG_BOOL, &f->record, 0, 0, 0, "a log of each match"},
+      {"league.seed", VS_CONFIG_SEED, &f->seed, 0, 0, 0, "of players that draw"},
+  };
+  char names[LEAGUE_CLUBS][CLUB_KEYS][24];
+  for (int i = 0; i < LEAGUE_CLUBS; i++) {
+    league_club *c = &f->club[i];
+    snprintf(names[i][0], 24, "club%d.name", i + 1);
+    snprintf(names[i][1], 24, "club%d.player", i + 1);
+    snprintf(names[i][2], 24, "club%d.command", i + 1);
+    vs_config_key *row = schema + OWN_KEYS + i * CLUB_KEYS;
+    row[0] = (vs_config_key){names[i][0], VS_CONFIG_TEXT, c->name, sizeof c->name, 0, 0, "for the table"};
+    row[1] = (vs_config_key){names[i][1], VS_CONFIG_TEXT, c->player, sizeof c->player, 0, 0, "URI"};
+    row[2] = (vs_config_key){names[i][2], VS_CONFIG_TEXT, c->command, sizeof c->command, 0, 0, "a program"};
+  }
+  vs_status s = vs_config_load(path, schema, err);
+  return s == VS_OK ? check(path, f, err) : s;
+}

@@ -1,0 +1,142 @@
+// Tests src/cli/cmd_league.c and src/cli/league_match.c as a user: programs, a crash, silence, a resumed league, its files.
+#include "assert_near.h"
+#include "run_vsss.h"
+#include "test_folder.h"
+#include "vsss/league_messages.h"
+
+static int offset;
+static vsss_run run;
+
+static void write_file(const char *name, const char *text) {
+  char path[128];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *f = fopen(path, "w");
+  assert_non_null(f);
+  fputs(text, f);
+  fclose(f);
+}
+
+static const char *read_file(const char *name) {
+  static char text[32768];
+  char path[256];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *f = fopen(path, "r");
+  size_t n = f ? fread(text, 1, sizeof text - 1, f) : 0;
+  if (f) fclose(f);
+  text[n] = '\0';
+  return text;
+}
+
+static void must_say(const char *text, const char *expected) {
+  if (!strstr(text, expected)) fail_msg("'%s' is missing in: %s", expected, text);
+}
+
+static void league(const char *name) {
+  char command[256];
+  snprintf(command, sizeof command, "league '%s/%s'", folder, name);
+  vsss(&run, command);
+}
+
+// Two players and a program that plays, one that ends at once, one that says nothing.
+static void clubs_meet_from_both_sides_and_who_fails_is_named(void **state) {
+  (void)state;
+  char self[4096], ini[8192];
+  vsss_binary(self, sizeof self);
+  char *cut = strstr(self, "/build/");
+  if (!cut) cut = strrchr(self, '/');
+  *cut = '\0';
+  snprintf(ini, sizeof ini,
+           "[league]\nseconds = 15\npause = 0\nwait = 4\ndrive = planar\nfolder = %s/out\nports = +%d\n"
+           "[club1]\nname = Zero\nplayer = zero:\n"
+           "[club2]\nname = Program\ncommand = \"exec python3 '%s/tests/serve/league_team.py'\"\n"
+           "[club3]\nname = Crash\ncommand = exit 3\n"
+           "[club4]\nname = Silent\ncommand = exec sleep 1000\n",
+           folder, offset, self);
+  write_file("all.ini", ini);
+  league("all.ini");
+  assert_int_equal(run.status, 0);
+  must_say(run.out, "12 of 12");
+  must_say(run.out, "Zero 10 : 0 Crash  Crash ended by itself (status 3)");
+  must_say(run.out, "Silent 0 : 10 Zero  Silent was never heard");
+  must_say(run.out, "out/index.html");
+  const char *json = read_file("out/results.json");
+  must_say(json, "\"matches\": 12, \"of\": 12");
+  must_say(json, "\"why\": \"Crash ended by itself (status 3)\"");
+  const char *page = read_file("out/index.html");
+  must_say(page, "<a href=\"1-Zero-Program.log\">");
+  must_say(page, "Crash ended by itself");
+  assert_null(strstr(page, "<script"));
+  char command[256];
+  snprintf(command, sizeof command, "replay '%s/out/1-Zero-Program.log'", folder);
+  vsss(&run, command);
+  must_say(run.out, "VSSS_TRUTH");
+  // Again: everything is there, nothing is played.
+  league("all.ini");
+  assert_int_equal(run.status, 0);
+  must_say(run.out, "12 of 12 matches are in");
+  assert_null(strstr(run.out, "1 of 12 "));
+}
+
+static void a_league_goes_on_where_it_was_stopped(void **state) {
+  (void)state;
+  char ini[1024];
+  snprintf(ini, sizeof ini,
+           "[league]\nseconds = 10\npause = 0\ndrive = planar\nrecord = no\nfolder = %s/again\nports = +%d\n"
+           "[club1]\nname = A\nplayer = emc:\n[club2]\nname = B\nplayer = zero:\n",
+           folder, offset + 10);
+  write_file("again.ini", ini);
+  league("again.ini");
+  assert_int_equal(run.status, 0);
+  static char whole[32768];
+  snprintf(whole, sizeof whole, "%s", read_file("again/results.csv"));
+  // Keep the first match only: the second is played anew, to the same result.
+  char part[32768];
+  snprintf(part, sizeof part, "%s", whole);
+  char *second = strchr(strchr(part, '\n') + 1, '\n');
+  assert_non_null(second);
+  second[1] = '\0';
+  write_file("again/results.csv", part);
+  league("again.ini");
+  must_say(run.out, "1 of 2 matches are in");
+  must_say(run.out, "2 of 2  B");
+  assert_string_equal(read_file("again/results.csv"), whole);
+  // Another league's results are not taken for ours.
+  write_file("again/results.csv", "round,blue,yellow\n1,A,Nobody,1,0,0,\"\"\n");
+  league("again.ini");
+  assert_int_equal(run.status, 1);
+  must_say(run.err, "line 2");
+}
+
+static void what_is_wrong_with_a_file_is_named(void **state) {
+  (void)state;
+  const struct {
+    const char *text, *why;
+  } row[] = {{"[club1]\nname = A\nplayer = zero:\n", "at least 2"},
+             {"[club1]\nname = A\n[club2]\nname = B\nplayer = zero:\n", "[club1] A: give either"},
+             {"[club1]\nname = A\nplayer = zero:\n[club2]\nname = A\nplayer = emc:\n", "another club has it"},
+             {"[club1]\nname = A,B\nplayer = zero:\n[club2]\nname = C\nplayer = emc:\n", "make a name"},
+             {"[club1]\nname = A\nplayer = nobody:\n[club2]\nname = C\nplayer = emc:\n", "A: "},
+             {"[league]\nmatches = 3\n", "matches"}};
+  for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
+    char command[256];
+    write_file("bad.ini", row[k].text);
+    snprintf(command, sizeof command, "league '%s/bad.ini'", folder);
+    assert_refused(command, 2, row[k].why);
+  }
+  assert_refused("league", 2, "FILE.ini");
+}
+
+int main(void) {
+  offset = 100 + (int)(getpid() % 200) * 100 + 70;
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(clubs_meet_from_both_sides_and_who_fails_is_named),
+      cmocka_unit_test(a_league_goes_on_where_it_was_stopped),
+      cmocka_unit_test(what_is_wrong_with_a_file_is_named),
+  };
+  vs_error err = {0};
+  if (vs_league_supported(&err) != VS_OK) {
+    print_message("note: %s\n", err.text);
+    return 0;
+  }
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
