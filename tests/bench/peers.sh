@@ -16,9 +16,11 @@ pythons=$(cd "$pythons" && pwd)
 scratch=$(cd "$folder/peers" && pwd) # some peers leave files where they run
 
 python_of() { # version: a command, or one that a version manager keeps
-  command -v "python$1" 2>/dev/null && return
+  # A version manager's shim may be there and refuse: only one that runs as this version counts.
+  runs() { "$1" -c "import sys; sys.exit('%d.%d' % sys.version_info[:2] != '$2')" 2>/dev/null; }
+  runs "python$1" "$1" && { command -v "python$1"; return; }
   for p in "${PYENV_ROOT:-$HOME/.pyenv}"/versions/"$1".*/bin/python; do
-    [ -x "$p" ] && { echo "$p"; return; }
+    runs "$p" "$1" && { echo "$p"; return; }
   done
 }
 

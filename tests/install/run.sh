@@ -82,6 +82,21 @@ target_link_libraries(loop PRIVATE vsss::vsss)
 END
   cmake -S . -B build -DCMAKE_PREFIX_PATH="$prefix" && cmake --build build && ldd build/loop | grep "$prefix/lib/libvsss.so.1"
 }
+# Every command and its flags are in the manual page, and the completion offers them.
+help_files() {
+  cp "$prefix/share/man/man1/vsss.1" "$root/page" || return 1
+  for command in $("$prefix/bin/vsss" --help | awk '/^  [a-z]/ {print $1}'); do
+    grep -q "^\.B $command\$" "$root/page" || { echo "no $command in the page"; return 1; }
+    for flag in $("$prefix/bin/vsss" help "$command" | awk '/^  --/ {print $1}'); do
+      grep -qF -e "$(echo "$flag" | sed 's/-/\\-/g')" "$root/page" || { echo "no $command $flag in the page"; return 1; }
+    done
+  done
+  [ "$(command -v bash)" ] || return 0
+  bash -c '. "$1"; set -e
+    COMP_WORDS=(vsss tr) COMP_CWORD=1; _vsss; [ "${COMPREPLY[*]}" = train ]
+    COMP_WORDS=(vsss sim --vi) COMP_CWORD=2; _vsss; [ "${COMPREPLY[0]}" = --video ]' bash \
+    "$prefix/share/bash-completion/completions/vsss"
+}
 uninstall() {
   ${MAKE:-make} --no-print-directory uninstall PREFIX="$prefix" && [ -z "$(find "$prefix" ! -type d)" ]
 }
@@ -91,6 +106,7 @@ check install install_all
 [ $bad = 0 ] || exit 1
 copy_examples
 check program program
+check help_files help_files
 check plugin plugin
 if [ "$(command -v pkg-config)" ]; then
   check vecenv vecenv
