@@ -65,6 +65,10 @@ FEATURE_OBJ += $(B)/deploy/firmware/firmware.o
 FEATURE_EXCLUDE += $(call choose,APRILTAG,src/vision/detect_tags.c)
 FEATURE_LIBS += $(if $(HAVE_APRILTAG),-lapriltag -lapriltag-utils)
 
+# libjpeg-turbo, else OpenCV decodes MJPG.
+FEATURE_EXCLUDE += $(call choose,JPEG,src/vision/jpeg.c)
+FEATURE_LIBS += $(if $(HAVE_JPEG),-ljpeg)
+
 # EGL: the renderer opens the library when it draws, only the headers are needed here.
 FEATURE_EXCLUDE += $(call choose,EGL,src/render/gl_context.c)
 

@@ -37,6 +37,7 @@ feature LCM liblcm-dev "messages, logger, replay, spy" /usr/include/lcm/lcm.h /u
 feature PROTOBUFC libprotobuf-c-dev "the league's network: serve" /usr/include/protobuf-c/protobuf-c.h /usr/bin/protoc-c
 feature APRILTAG libapriltag-dev "robot tags" /usr/include/apriltag/apriltag.h
 feature OPENCV libopencv-dev "cameras, calibration, images" /usr/include/opencv4/opencv2/core.hpp
+feature JPEG libjpeg62-turbo-dev "cameras that give MJPG, faster" /usr/include/jpeglib.h
 feature EGL libegl-dev "rendering: video and rig" /usr/include/EGL/egl.h
 feature ONEDNN libdnnl-dev "training, faster" /usr/include/oneapi/dnnl/dnnl.h
 feature OPENBLAS libopenblas-dev "training" '/usr/include/*/cblas.h'

@@ -52,6 +52,7 @@ liblcm-java libjchart2d-java default-jre default-jdk-headless  ./vsss spy (lcm-s
 libprotobuf-c-dev protobuf-c-compiler  the simulation league's network messages (serve)
 libopencv-dev       cameras, calibration, images
 libapriltag-dev     robot tags
+libjpeg62-turbo-dev  pictures of MJPG cameras, faster than by OpenCV
 libegl-dev libgl-dev libegl-mesa0 libgl1-mesa-dri  off-screen pictures
 ffmpeg              videos
 gnuplot-nox         ./vsss plot

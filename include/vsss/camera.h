@@ -29,20 +29,24 @@ typedef struct vs_frame {
 } vs_frame;
 
 typedef struct vs_camera_def {
-  int width, height;  // asked for; a file has its own. 0: the device's best of 1280x720 and 640x480
-  double fps;         // asked for; pace of a folder of images. 0: device 60, folder 30
-  double exposure_ms; // manual exposure asked for, 0: leave it alone. Above 5 ms tags blur (field.md, Tags)
-  bool every_frame;   // recordings: each frame once, as fast as it is read, instead of at its own pace, newest first
+  int width,
+      height; // asked for; a file has its own. 0: 1280x720 if the device gives it at the rate asked for, else 640x480
+  double fps; // asked for; pace of a folder of images. 0: device 60, folder 30
+  double exposure_ms;     // manual exposure asked for, 0: leave it alone. Above 5 ms tags blur (field.md, Tags)
+  double gain;            // of the device's own scale, asked for with white_balance_k; 0: left alone
+  double white_balance_k; // colour temperature, kelvin; 0: what the device has chosen, held there
+  bool every_frame; // recordings: each frame once, as fast as it is read, instead of at its own pace, newest first
 } vs_camera_def;
-vs_camera_def vs_camera_def_default(void); // 0, 0, 0, 4 ms, false
+vs_camera_def vs_camera_def_default(void); // all 0 but 4 ms of exposure
 
 // What was really obtained.
 typedef struct vs_camera_info {
   char name[96]; // device's or file's; calibration files carry it
   int width, height;
-  double fps;         // nominal; 0: not known
-  double exposure_ms; // as read back; 0: not known or automatic
-  char note[192];     // one line worth showing: pixel format, controls the device refused, ...; "" if nothing
+  double fps;                   // nominal; 0: not known
+  double exposure_ms;           // as read back; 0: not known or automatic
+  double gain, white_balance_k; // as read back; 0: not known
+  char note[192];               // one line worth showing: pixel format, controls the device refused, ...; "" if nothing
 } vs_camera_info;
 
 typedef enum vs_camera_got { VS_CAMERA_FRAME, VS_CAMERA_TIMEOUT, VS_CAMERA_END } vs_camera_got;

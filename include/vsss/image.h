@@ -19,8 +19,16 @@ typedef struct vs_image {
 
 // Luma of ITU-R BT.601 (0.299 R + 0.587 G + 0.114 B), the weights V4L2 and JPEG use.
 void vs_image_grey(const uint8_t *bgr, int bgr_stride, int width, int height, uint8_t *grey, int grey_stride);
-// Packed 4:2:2 Y U Y V of V4L2 (BT.601, limited range) into both planes a frame needs.
+// Pixels of V4L2 (BT.601, limited range) into both planes a frame needs: packed 4:2:2 Y U Y V and U Y V Y; NV12, a plane of
+// luma and one of U V at half size below it, both of stride bytes a row; grey alone, whose colours are grey, too. width
+// even, for NV12 height too.
 void vs_image_from_yuyv(const uint8_t *yuyv, int yuyv_stride, int width, int height, uint8_t *grey, int grey_stride,
+                        uint8_t *bgr, int bgr_stride);
+void vs_image_from_uyvy(const uint8_t *uyvy, int uyvy_stride, int width, int height, uint8_t *grey, int grey_stride,
+                        uint8_t *bgr, int bgr_stride);
+void vs_image_from_nv12(const uint8_t *nv12, int nv12_stride, int width, int height, uint8_t *grey, int grey_stride,
+                        uint8_t *bgr, int bgr_stride);
+void vs_image_from_grey(const uint8_t *luma, int luma_stride, int width, int height, uint8_t *grey, int grey_stride,
                         uint8_t *bgr, int bgr_stride);
 
 // Lines and discs clipped to the picture; colour is {blue, green, red}.

@@ -1,5 +1,5 @@
 // A V4L2 camera: mapped buffers, each frame with the driver's own monotonic stamp and sequence number, always the newest.
-// YUYV is taken as it is, MJPG through the OpenCV module.
+// Pixel formats are in camera_v4l2_format.c.
 #include "vision/camera_v4l2.h"
 
 #include <errno.h>
@@ -14,7 +14,7 @@
 #include <linux/videodev2.h>
 
 #include "vision/camera_sources.h"
-#include "vision/opencv.h"
+#include "vision/jpeg.h"
 #include "vsss/clock.h"
 #include "vsss/image.h"
 
@@ -26,9 +26,10 @@ struct vs_v4l2 {
   int fd;
   char path[64];
   int width, height, stride;
-  bool mjpg, streaming;
+  bool streaming;
+  const vs_v4l2_format *format;
   double exposure_ms;
-  const vs_opencv *cv; // for MJPG
+  vs_jpeg *jpeg; // for MJPG; NULL: none can be read
   int buffers;
   void *map[BUFFERS];
   size_t length[BUFFERS];
@@ -62,39 +63,38 @@ static vs_status open_device(vs_v4l2 *c, vs_camera_info *info, vs_error *err) {
 }
 
 // Asks for one size and pixel format; true: the driver gives a format we read (perhaps of another size).
-static bool try_format(vs_v4l2 *c, unsigned pixel, int width, int height) {
+static bool try_format(vs_v4l2 *c, const vs_v4l2_format *format, int width, int height) {
   struct v4l2_format f = {.type = V4L2_BUF_TYPE_VIDEO_CAPTURE};
   f.fmt.pix.width = (unsigned)width;
   f.fmt.pix.height = (unsigned)height;
-  f.fmt.pix.pixelformat = pixel;
+  f.fmt.pix.pixelformat = format->pixel;
   f.fmt.pix.field = V4L2_FIELD_NONE;
-  if (call(c, VIDIOC_S_FMT, &f) < 0 || f.fmt.pix.pixelformat != pixel) return false;
+  if (call(c, VIDIOC_S_FMT, &f) < 0 || f.fmt.pix.pixelformat != format->pixel) return false;
   c->width = (int)f.fmt.pix.width & ~1;
   c->height = (int)f.fmt.pix.height;
-  c->stride = f.fmt.pix.bytesperline ? (int)f.fmt.pix.bytesperline : 2 * c->width;
-  c->mjpg = pixel == V4L2_PIX_FMT_MJPEG;
+  if (format->pixel == V4L2_PIX_FMT_NV12) c->height &= ~1;
+  c->stride = f.fmt.pix.bytesperline ? (int)f.fmt.pix.bytesperline : c->width * format->half_bytes / 2;
+  c->format = format;
   return c->width > 0 && c->height > 0;
 }
 
 static vs_status choose_format(vs_v4l2 *c, const vs_camera_def *def, vs_error *err) {
-  vs_error no_opencv;
-  bool jpeg = vs_opencv_load(&c->cv, &no_opencv) == VS_OK;
-  // USB 2 carries 720p at speed as MJPG only; at 640x480 YUYV spares the decoding.
-  const struct {
-    unsigned pixel;
-    int width, height;
-  } wish[] = {{V4L2_PIX_FMT_MJPEG, 1280, 720}, {V4L2_PIX_FMT_YUYV, 640, 480}, {V4L2_PIX_FMT_MJPEG, 640, 480}};
-  for (size_t i = 0; i < sizeof wish / sizeof *wish; i++) {
-    int width = def->width > 0 ? def->width : wish[i].width, height = def->height > 0 ? def->height : wish[i].height;
-    if (wish[i].pixel == V4L2_PIX_FMT_MJPEG && !jpeg) continue;
-    if (try_format(c, wish[i].pixel, width, height) && c->width == width && c->height == height) return VS_OK;
-  }
+  vs_error no_jpeg = {0};
+  bool jpeg = vs_jpeg_new(&c->jpeg, &no_jpeg) == VS_OK;
+  vs_v4l2_wish wish[VS_V4L2_WISHES];
+  int wishes = vs_v4l2_wishes(&c->kernel, c->fd, def, jpeg, wish);
+  for (int i = 0; i < wishes; i++)
+    if (try_format(c, wish[i].format, wish[i].width, wish[i].height) && c->width == wish[i].width &&
+        c->height == wish[i].height)
+      return VS_OK;
   // No wish is met exactly: whatever size comes nearest.
+  static const unsigned any[] = {V4L2_PIX_FMT_YUYV, V4L2_PIX_FMT_UYVY, V4L2_PIX_FMT_NV12, V4L2_PIX_FMT_MJPEG,
+                                 V4L2_PIX_FMT_GREY};
   int width = def->width > 0 ? def->width : 640, height = def->height > 0 ? def->height : 480;
-  if (try_format(c, V4L2_PIX_FMT_YUYV, width, height)) return VS_OK;
-  if (jpeg && try_format(c, V4L2_PIX_FMT_MJPEG, width, height)) return VS_OK;
-  return vs_fail(err, VS_FAIL, "%s: gives neither YUYV nor MJPG pictures%s%s", c->path, jpeg ? "" : "; ",
-                 jpeg ? "" : no_opencv.text);
+  for (size_t i = 0; i < sizeof any / sizeof *any; i++)
+    if ((any[i] != V4L2_PIX_FMT_MJPEG || jpeg) && try_format(c, vs_v4l2_format_of(any[i]), width, height)) return VS_OK;
+  return vs_fail(err, VS_FAIL, "%s: gives none of YUYV, UYVY, NV12, MJPG, GREY%s%s", c->path, jpeg ? "" : "; ",
+                 jpeg ? "" : no_jpeg.text);
 }
 
 static double set_rate(vs_v4l2 *c, double fps) {
@@ -115,7 +115,6 @@ static void set_exposure(vs_v4l2 *c, const vs_camera_def *def, vs_camera_info *i
   bool manual = set_control(c, V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL);
   set_control(c, V4L2_CID_EXPOSURE_AUTO_PRIORITY, 0); // else the driver lowers the frame rate in the dark
   bool set = set_control(c, V4L2_CID_EXPOSURE_ABSOLUTE, (int)(10 * def->exposure_ms + 0.5)); // unit 0.1 ms
-  set_control(c, V4L2_CID_AUTO_WHITE_BALANCE, 0);
   set_control(c, V4L2_CID_FOCUS_AUTO, 0);
   struct v4l2_control now = {.id = V4L2_CID_EXPOSURE_ABSOLUTE};
   if (manual && set && call(c, VIDIOC_G_CTRL, &now) == 0) c->exposure_ms = 0.1 * now.value;
@@ -125,6 +124,32 @@ static void set_exposure(vs_v4l2 *c, const vs_camera_def *def, vs_camera_info *i
   else if (c->exposure_ms > 5)
     snprintf(info->note + used, sizeof info->note - used, "; exposure %.1f ms is above 5: tags will blur",
              c->exposure_ms);
+}
+
+static double read_control(const vs_v4l2 *c, unsigned id) {
+  struct v4l2_control now = {.id = id};
+  return call(c, VIDIOC_G_CTRL, &now) == 0 ? now.value : 0.0;
+}
+
+// Colours that were learnt stay what they were only under a white balance and a gain that stay.
+static void set_colours(const vs_v4l2 *c, const vs_camera_def *def, vs_camera_info *info) {
+  set_control(c, V4L2_CID_AUTO_WHITE_BALANCE, 0);
+  bool white = def->white_balance_k <= 0 ||
+               set_control(c, V4L2_CID_WHITE_BALANCE_TEMPERATURE, (int)(def->white_balance_k + 0.5));
+  if (def->gain > 0) set_control(c, V4L2_CID_AUTOGAIN, 0);
+  bool gain = def->gain <= 0 || set_control(c, V4L2_CID_GAIN, (int)(def->gain + 0.5));
+  info->white_balance_k = read_control(c, V4L2_CID_WHITE_BALANCE_TEMPERATURE);
+  info->gain = read_control(c, V4L2_CID_GAIN);
+  size_t used = strlen(info->note);
+  if (info->gain > 0 || info->white_balance_k > 0)
+    snprintf(info->note + used, sizeof info->note - used, "; gain %g, white balance %g K", info->gain,
+             info->white_balance_k);
+  used = strlen(info->note);
+  if (!white || !gain)
+    snprintf(info->note + used, sizeof info->note - used, "; the camera refuses %s",
+             gain    ? "the white balance"
+             : white ? "the gain"
+                     : "gain and white balance");
 }
 
 static vs_status map_buffers(vs_v4l2 *c, vs_error *err) {
@@ -171,9 +196,9 @@ vs_status vs_v4l2_open(const vs_v4l2_kernel *kernel, const char *path, const vs_
   if (s == VS_OK) s = choose_format(c, def, err);
   if (s == VS_OK) {
     info->fps = set_rate(c, def->fps);
-    snprintf(info->note, sizeof info->note, "%s %d x %d at %.0f fps", c->mjpg ? "MJPG" : "YUYV", c->width, c->height,
-             info->fps);
+    snprintf(info->note, sizeof info->note, "%s %d x %d at %.0f fps", c->format->name, c->width, c->height, info->fps);
     set_exposure(c, def, info);
+    set_colours(c, def, info);
     s = start(c, err);
   }
   if (s != VS_OK) {
@@ -193,6 +218,7 @@ void vs_v4l2_close(vs_v4l2 *c) {
   if (c->streaming) call(c, VIDIOC_STREAMOFF, &type);
   for (int i = 0; i < c->buffers; i++) c->kernel.munmap(c->map[i], c->length[i]);
   if (c->fd >= 0) c->kernel.close(c->fd);
+  vs_jpeg_free(c->jpeg);
   free(c->bgr);
   free(c->grey);
   free(c);
@@ -227,14 +253,11 @@ static int newest(const vs_v4l2 *c, struct v4l2_buffer *held) {
 static vs_status convert(vs_v4l2 *c, const struct v4l2_buffer *b, vs_error *err) {
   const uint8_t *pixels = c->map[b->index];
   size_t used = b->bytesused ? b->bytesused : b->length;
-  if (c->mjpg) {
-    vs_status s = c->cv->jpeg_decode(pixels, used, c->bgr, c->width, c->height, err);
-    if (s == VS_OK) vs_image_grey(c->bgr, 3 * c->width, c->width, c->height, c->grey, c->width);
-    return s;
-  }
-  if (used < (size_t)c->stride * (c->height - 1) + 2 * (size_t)c->width)
+  if (!c->format->convert) return vs_jpeg_decode(c->jpeg, pixels, used, c->width, c->height, c->bgr, c->grey, err);
+  int rows = c->format->pixel == V4L2_PIX_FMT_NV12 ? c->height * 3 / 2 : c->height;
+  if (used < (size_t)c->stride * (rows - 1) + (size_t)c->width * c->format->half_bytes / 2)
     return vs_fail(err, VS_FAIL, "a frame of %zu bytes is too short", used);
-  vs_image_from_yuyv(pixels, c->stride, c->width, c->height, c->grey, c->width, c->bgr, 3 * c->width);
+  c->format->convert(pixels, c->stride, c->width, c->height, c->grey, c->width, c->bgr, 3 * c->width);
   return VS_OK;
 }
 

@@ -22,19 +22,48 @@ static void pixel_from_yuv(int luma, int red, int green, int blue, uint8_t *bgr)
   bgr[2] = byte_of((l + red) >> 8);
 }
 
+// Two neighbours that share their chroma.
+static void pair(int luma0, int luma1, int u, int v, uint8_t *luma, uint8_t *bgr) {
+  int red = 409 * v, green = -100 * u - 208 * v, blue = 516 * u;
+  luma[0] = (uint8_t)luma0;
+  luma[1] = (uint8_t)luma1;
+  pixel_from_yuv(luma0, red, green, blue, bgr);
+  pixel_from_yuv(luma1, red, green, blue, bgr + 3);
+}
+
 void vs_image_from_yuyv(const uint8_t *yuyv, int yuyv_stride, int width, int height, uint8_t *grey, int grey_stride,
                         uint8_t *bgr, int bgr_stride) {
   for (int y = 0; y < height; y++) {
     const uint8_t *in = yuyv + (size_t)y * yuyv_stride;
     uint8_t *luma = grey + (size_t)y * grey_stride, *out = bgr + (size_t)y * bgr_stride;
-    for (int x = 0; x + 1 < width; x += 2, in += 4, out += 6) {
-      int u = in[1] - 128, v = in[3] - 128;
-      int red = 409 * v, green = -100 * u - 208 * v, blue = 516 * u;
-      luma[x] = in[0];
-      luma[x + 1] = in[2];
-      pixel_from_yuv(in[0], red, green, blue, out);
-      pixel_from_yuv(in[2], red, green, blue, out + 3);
-    }
+    for (int x = 0; x + 1 < width; x += 2, in += 4) pair(in[0], in[2], in[1] - 128, in[3] - 128, luma + x, out + 3 * x);
+  }
+}
+
+void vs_image_from_uyvy(const uint8_t *uyvy, int uyvy_stride, int width, int height, uint8_t *grey, int grey_stride,
+                        uint8_t *bgr, int bgr_stride) {
+  for (int y = 0; y < height; y++) {
+    const uint8_t *in = uyvy + (size_t)y * uyvy_stride;
+    uint8_t *luma = grey + (size_t)y * grey_stride, *out = bgr + (size_t)y * bgr_stride;
+    for (int x = 0; x + 1 < width; x += 2, in += 4) pair(in[1], in[3], in[0] - 128, in[2] - 128, luma + x, out + 3 * x);
+  }
+}
+
+void vs_image_from_nv12(const uint8_t *nv12, int nv12_stride, int width, int height, uint8_t *grey, int grey_stride,
+                        uint8_t *bgr, int bgr_stride) {
+  for (int y = 0; y < height; y++) {
+    const uint8_t *in = nv12 + (size_t)y * nv12_stride, *uv = nv12 + (size_t)(height + y / 2) * nv12_stride;
+    uint8_t *luma = grey + (size_t)y * grey_stride, *out = bgr + (size_t)y * bgr_stride;
+    for (int x = 0; x + 1 < width; x += 2) pair(in[x], in[x + 1], uv[x] - 128, uv[x + 1] - 128, luma + x, out + 3 * x);
+  }
+}
+
+void vs_image_from_grey(const uint8_t *from, int from_stride, int width, int height, uint8_t *grey, int grey_stride,
+                        uint8_t *bgr, int bgr_stride) {
+  for (int y = 0; y < height; y++) {
+    const uint8_t *in = from + (size_t)y * from_stride;
+    uint8_t *luma = grey + (size_t)y * grey_stride, *out = bgr + (size_t)y * bgr_stride;
+    for (int x = 0; x < width; x++) luma[x] = out[3 * x] = out[3 * x + 1] = out[3 * x + 2] = in[x];
   }
 }
 

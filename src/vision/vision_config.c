@@ -54,6 +54,8 @@ int vs_vision_schema(vs_detector_def *d, vs_track_def *t, vs_camera_def *c, vs_v
   whole(&r, "vision.height_px", &c->height, 0, 8192, "asked of the camera");
   number(&r, "vision.fps", &c->fps, 0, 1000, "asked of the camera; 0: 60");
   number(&r, "vision.exposure_ms", &c->exposure_ms, 0, 1000, "above 5 ms tags blur; 0: left alone");
+  number(&r, "vision.gain", &c->gain, 0, 10000, "of the camera's own scale; 0: left alone");
+  number(&r, "vision.white_balance_k", &c->white_balance_k, 0, 20000, "kelvin; 0: held where the camera has it");
   char name[sizeof words->family]; // by way of a copy: the family may already point to this buffer
   snprintf(name, sizeof name, "%s", d->tag.family);
   memcpy(words->family, name, sizeof name);

@@ -20,7 +20,13 @@ static struct {
   unsigned char memory[SLOTS][640 * 480 * 2 + 4096];
   bool queued[SLOTS], mapped[SLOTS], opened, streaming;
   struct v4l2_buffer filled[MOST]; // oldest first
-  int fills, exposure, exposure_auto, asked_fps, closes;
+  int fills, exposure, exposure_auto, asked_fps, closes, gain, kelvin, auto_white;
+  // What it lists, if anything: then S_FMT gives what is asked.
+  int listed;
+  struct {
+    unsigned pixel;
+    int width, height, fps;
+  } mode[8];
 } driver;
 
 static void reset_driver(void) {
@@ -58,7 +64,34 @@ static int control(struct v4l2_control *c, bool set) {
     c->value = driver.exposure;
     return 0;
   }
-  return errno_is(EINVAL); // no focus, no white balance
+  int *value = c->id == V4L2_CID_GAIN                        ? &driver.gain
+               : c->id == V4L2_CID_WHITE_BALANCE_TEMPERATURE ? &driver.kelvin
+               : c->id == V4L2_CID_AUTO_WHITE_BALANCE        ? &driver.auto_white
+                                                             : NULL;
+  if (!value || (value != &driver.auto_white && !*value)) return errno_is(EINVAL); // no focus; gain 0: none
+  if (set) *value = c->value;
+  c->value = *value;
+  return 0;
+}
+
+static int list_format(struct v4l2_fmtdesc *about) {
+  unsigned known = 0, last = 0;
+  for (int i = 0; i < driver.listed; i++) {
+    if (driver.mode[i].pixel == last) continue;
+    last = driver.mode[i].pixel;
+    if (known++ == about->index) return about->pixelformat = last, 0;
+  }
+  return errno_is(EINVAL);
+}
+
+static int list_rate(struct v4l2_frmivalenum *r) {
+  for (int i = 0; i < driver.listed; i++) {
+    if (driver.mode[i].pixel != r->pixel_format || driver.mode[i].width != (int)r->width || r->index > 0) continue;
+    r->type = V4L2_FRMIVAL_TYPE_DISCRETE;
+    r->discrete = (struct v4l2_fract){1, (unsigned)driver.mode[i].fps};
+    return 0;
+  }
+  return errno_is(EINVAL);
 }
 
 static int dequeue(struct v4l2_buffer *b) {
@@ -83,11 +116,17 @@ static int fake_ioctl(int fd, unsigned long request, void *argument) {
   }
   case VIDIOC_S_FMT: {
     struct v4l2_pix_format *f = &((struct v4l2_format *)argument)->fmt.pix;
+    if (driver.listed) {
+      driver.format = f->pixelformat;
+      driver.width = (int)f->width, driver.height = (int)f->height;
+    }
     f->pixelformat = driver.format;
     f->width = (unsigned)driver.width, f->height = (unsigned)driver.height;
     f->bytesperline = driver.format == V4L2_PIX_FMT_YUYV ? (unsigned)(2 * driver.width + driver.padding) : 0;
     return 0;
   }
+  case VIDIOC_ENUM_FMT: return driver.listed ? list_format(argument) : errno_is(ENOTTY);
+  case VIDIOC_ENUM_FRAMEINTERVALS: return list_rate(argument);
   case VIDIOC_S_PARM: {
     struct v4l2_captureparm *p = &((struct v4l2_streamparm *)argument)->parm.capture;
     driver.asked_fps = (int)(p->timeperframe.denominator / p->timeperframe.numerator);
@@ -114,7 +153,10 @@ static int fake_ioctl(int fd, unsigned long request, void *argument) {
     if (driver.streamon_errno) return errno_is(driver.streamon_errno);
     driver.streaming = true;
     return 0;
-  case VIDIOC_STREAMOFF: driver.streaming = false; return 0;
+  case VIDIOC_STREAMOFF:
+    driver.streaming = false;
+    memset(driver.queued, 0, sizeof driver.queued); // as a driver gives all buffers back
+    return 0;
   }
   return errno_is(ENOTTY);
 }
@@ -285,6 +327,68 @@ static void mjpg_frames_are_decoded_and_damaged_ones_lost(void **state) {
   vs_v4l2_close(camera);
 }
 
+// The rate asked for goes before the size, the size before cheap decoding, colours before everything.
+static void the_format_is_chosen_by_frame_rate(void **state) {
+  (void)state;
+  const struct {
+    int fps; // asked for; 0: 60
+    struct {
+      unsigned pixel;
+      int width, height, fps;
+    } mode[6];
+    const char *says;
+  } rows[] = {
+      {0,
+       {{V4L2_PIX_FMT_YUYV, 1280, 720, 10},
+        {V4L2_PIX_FMT_YUYV, 640, 480, 30},
+        {V4L2_PIX_FMT_MJPEG, 1280, 720, 30},
+        {V4L2_PIX_FMT_MJPEG, 640, 480, 60}},
+       "MJPG 640 x 480"},
+      {30,
+       {{V4L2_PIX_FMT_YUYV, 1280, 720, 10}, {V4L2_PIX_FMT_YUYV, 640, 480, 30}, {V4L2_PIX_FMT_MJPEG, 1280, 720, 30}},
+       "MJPG 1280 x 720"},
+      {0, {{V4L2_PIX_FMT_UYVY, 640, 480, 60}, {V4L2_PIX_FMT_MJPEG, 640, 480, 60}}, "UYVY 640 x 480"},
+      {0, {{V4L2_PIX_FMT_NV12, 640, 480, 120}, {V4L2_PIX_FMT_MJPEG, 640, 480, 30}}, "NV12 640 x 480"},
+      {0, {{V4L2_PIX_FMT_GREY, 640, 480, 60}, {V4L2_PIX_FMT_YUYV, 640, 480, 15}}, "YUYV 640 x 480"},
+      {0, {{V4L2_PIX_FMT_GREY, 640, 480, 60}}, "GREY 640 x 480"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    reset_driver();
+    for (; driver.listed < 6 && rows[i].mode[driver.listed].pixel; driver.listed++)
+      memcpy(&driver.mode[driver.listed], &rows[i].mode[driver.listed], sizeof driver.mode[0]);
+    vs_v4l2 *camera;
+    vs_camera_info info;
+    vs_camera_def def = vs_camera_def_default();
+    def.fps = rows[i].fps;
+    assert_ok(vs_v4l2_open(&kernel, "/dev/video0", &def, &camera, &info, err));
+    if (!strstr(info.note, rows[i].says)) fail_msg("row %zu: %s", i, info.note);
+    vs_v4l2_close(camera);
+  }
+}
+
+static void gain_and_white_balance_are_set_and_read_back(void **state) {
+  (void)state;
+  reset_driver();
+  driver.gain = 5, driver.kelvin = 4000, driver.auto_white = 1;
+  vs_v4l2 *camera;
+  vs_camera_info info;
+  vs_camera_def def = vs_camera_def_default();
+  assert_ok(vs_v4l2_open(&kernel, "/dev/video0", &def, &camera, &info, err));
+  vs_v4l2_close(camera);
+  assert_true(driver.gain == 5 && driver.kelvin == 4000 && driver.auto_white == 0); // held
+  def.gain = 30, def.white_balance_k = 5200;
+  assert_ok(vs_v4l2_open(&kernel, "/dev/video0", &def, &camera, &info, err));
+  vs_v4l2_close(camera);
+  assert_true(driver.gain == 30 && driver.kelvin == 5200);
+  assert_near(info.gain, 30, 0);
+  assert_near(info.white_balance_k, 5200, 0);
+  assert_non_null(strstr(info.note, "gain 30, white balance 5200 K"));
+  driver.gain = 0;
+  assert_ok(vs_v4l2_open(&kernel, "/dev/video0", &def, &camera, &info, err));
+  vs_v4l2_close(camera);
+  assert_non_null(strstr(info.note, "refuses the gain"));
+}
+
 static void a_camera_pulled_out_is_an_error_that_names_it(void **state) {
   (void)state;
   reset_driver();
@@ -309,7 +413,7 @@ static void each_way_to_fail_to_open_says_why_and_leaves_nothing_open(void **sta
               {ENOENT, 0, 0, 0, "no such camera"},
               {EBUSY, 0, 0, 0, "another program"},
               {0, V4L2_CAP_VIDEO_OUTPUT, 0, 0, "captures no video"},
-              {0, 0, 0, V4L2_PIX_FMT_SBGGR8, "neither YUYV nor MJPG"},
+              {0, 0, 0, V4L2_PIX_FMT_SBGGR8, "none of YUYV, UYVY, NV12, MJPG, GREY"},
               {0, 0, ENOSPC, 0, "USB bandwidth"}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     reset_driver();
@@ -338,6 +442,8 @@ int main(void) {
       cmocka_unit_test(broken_frames_are_skipped_and_their_buffers_go_back),
       cmocka_unit_test(rows_with_padding_are_read_at_their_stride),
       cmocka_unit_test(mjpg_frames_are_decoded_and_damaged_ones_lost),
+      cmocka_unit_test(the_format_is_chosen_by_frame_rate),
+      cmocka_unit_test(gain_and_white_balance_are_set_and_read_back),
       cmocka_unit_test(a_camera_pulled_out_is_an_error_that_names_it),
       cmocka_unit_test(each_way_to_fail_to_open_says_why_and_leaves_nothing_open),
   };

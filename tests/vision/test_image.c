@@ -102,6 +102,29 @@ static void a_jpeg_shrinks_and_is_refused_where_it_does_not_fit(void **state) {
   assert_non_null(strstr(err.text, "does not fit 100"));
 }
 
+// One pair of pixels of luma 100 and 180, U 90, V 160, in each way to pack it, is the same picture.
+static void every_packing_of_the_same_pixels_gives_the_same_picture(void **state) {
+  (void)state;
+  const uint8_t yuyv[8] = {100, 90, 180, 160, 100, 90, 180, 160}, uyvy[8] = {90, 100, 160, 180, 90, 100, 160, 180};
+  const uint8_t nv12[6] = {100, 180, 100, 180, 90, 160}; // two rows of luma, one of chroma
+  uint8_t grey[3][2][2], bgr[3][2][6];
+  vs_image_from_yuyv(yuyv, 4, 2, 2, &grey[0][0][0], 2, &bgr[0][0][0], 6);
+  vs_image_from_uyvy(uyvy, 4, 2, 2, &grey[1][0][0], 2, &bgr[1][0][0], 6);
+  vs_image_from_nv12(nv12, 2, 2, 2, &grey[2][0][0], 2, &bgr[2][0][0], 6);
+  for (int i = 1; i < 3; i++) {
+    assert_memory_equal(grey[i], grey[0], sizeof grey[0]);
+    assert_memory_equal(bgr[i], bgr[0], sizeof bgr[0]);
+  }
+  assert_int_equal(grey[0][1][1], 180);
+  // 298 (100 - 16) / 256 = 97.8; red + 409 * 32 / 256 = 51.1; blue + 516 * -38 / 256 = -76.6.
+  assert_near(bgr[0][0][2], 97.8 + 51.1, 1);
+  assert_near(bgr[0][0][0], 97.8 - 76.6, 1);
+  const uint8_t luma[2] = {7, 200};
+  vs_image_from_grey(luma, 2, 2, 1, &grey[0][0][0], 2, &bgr[0][0][0], 6);
+  assert_int_equal(grey[0][0][1], 200);
+  for (int i = 3; i < 6; i++) assert_int_equal(bgr[0][0][i], 200);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(grey_weighs_the_colours_as_bt601),
@@ -110,6 +133,7 @@ int main(void) {
       cmocka_unit_test(drawing_stays_inside_the_picture),
       cmocka_unit_test(a_saved_picture_is_read_back_by_a_camera),
       cmocka_unit_test(a_jpeg_shrinks_and_is_refused_where_it_does_not_fit),
+      cmocka_unit_test(every_packing_of_the_same_pixels_gives_the_same_picture),
   };
   return cmocka_run_group_tests_name("vision/image", tests, NULL, NULL);
 }
