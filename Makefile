@@ -27,6 +27,11 @@ ifeq ($(FLAVOUR),tsan)
 SAN := -fsanitize=thread -fno-omit-frame-pointer
 OPT := -O1 -g
 endif
+ifeq ($(FLAVOUR),fuzz)
+SAN := -fsanitize=fuzzer-no-link,address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined
+OPT := -O1 -g
+WARN := -w
+endif
 # No fused multiply-add: a match must hash the same on every machine and at every optimisation level.
 CFLAGS_ALL := -std=gnu11 $(WARN) $(OPT) -ffp-contract=off -fPIC -fvisibility=hidden -pthread -Iinclude -Isrc -isystem build/gen $(FEATURE_CFLAGS) $(SAN) $(CPPFLAGS) $(CFLAGS)
 CXXFLAGS_ALL := -std=gnu++17 $(WARN) $(OPT) -fPIC -pthread -Iinclude -Isrc $(SAN) $(CPPFLAGS) $(CXXFLAGS)
@@ -51,6 +56,7 @@ help:
 	@echo "make           build ./vsss"
 	@echo "make test      build and run all tests; T=module/file runs one (tests/module/test_file.c)"
 	@echo "make asan      the tests under the address and undefined-behaviour sanitizers; make tsan: threads"
+	@echo "make fuzz      made-up input for every reader, SECONDS=60 each (clang)"
 	@echo "make lint      layers, formatting, banned functions, static analysis"
 	@echo "make bench     the figures: 'bench NAME VALUE UNIT', medians"
 	@echo "make bench-peers  beside the benchmarks of peer projects; INSTALL=1 installs those, N=python: only the Python ones"
@@ -115,6 +121,8 @@ asan:
 	@ASAN_OPTIONS=intercept_tls_get_addr=0:$$ASAN_OPTIONS $(MAKE) --no-print-directory FLAVOUR=asan test
 tsan:
 	@TSAN_OPTIONS=suppressions=$(CURDIR)/tests/tsan.supp $(MAKE) --no-print-directory FLAVOUR=tsan test
+
+include tests/fuzz/fuzz.mk
 
 lint:
 	@sh tests/lint.sh

@@ -10,7 +10,7 @@ void vs_bytes_free(vs_bytes *bytes) {
 
 void *vs_bytes_room(vs_bytes *bytes, size_t size) {
   if (bytes->failed) return NULL;
-  if (bytes->size + size > bytes->capacity) {
+  if (!bytes->data || bytes->size + size > bytes->capacity) {
     size_t capacity = 2 * bytes->capacity > bytes->size + size ? 2 * bytes->capacity : bytes->size + size + 64;
     uint8_t *grown = realloc(bytes->data, capacity);
     if (!grown) {
