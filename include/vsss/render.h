@@ -6,6 +6,7 @@
 #ifndef VSSS_RENDER_H
 #define VSSS_RENDER_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "vsss/api.h"
@@ -34,6 +35,7 @@ typedef struct vs_render_def {
   // team-coloured square of VS_RENDER_PATCH_M.
   vs_cap cap[VS_TEAMS][VS_TEAM_SIZE];
   double camera_height_m; // CAMERA: lens over the floor; 2.2
+  bool white_walls;       // CAMERA: instead of dark ones
   const char *title;      // BROADCAST: shown beside the score, such as "EMC  INF"; NULL: none. Copied.
 } vs_render_def;
 

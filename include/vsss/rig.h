@@ -14,6 +14,13 @@
 extern "C" {
 #endif
 
+// What spoils the camera's pictures; all 0: nothing does.
+typedef struct vs_rig_optics {
+  double noise;   // deviation, grey levels
+  double uneven;  // share of the light that the darkest corner lacks, 0..1
+  double blur_px; // deviation of the lens's blur
+} vs_rig_optics;
+
 typedef struct vs_rig_def {
   const vs_model *model; // outlives the rig
   vs_team team;          // the one with tags and radios, played by `vsss field`
@@ -22,6 +29,8 @@ typedef struct vs_rig_def {
   uint64_t seed;
   int width_px, height_px;
   double camera_height_m;
+  bool white_walls; // as LARC 2026 has them
+  vs_rig_optics optics;
   vs_mark own, their;       // what the teams wear: VS_MARK_APRIL, VS_MARK_PATCH
   int tag_id[VS_TEAM_SIZE]; // AprilTags of the own team; ArUco marks are the league's
   uint8_t radio_id[VS_TEAM_SIZE];

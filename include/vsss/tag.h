@@ -17,10 +17,11 @@ extern "C" {
 #define VS_TAG_MAX_CELLS 12 // a side of the largest family, white margin included
 
 // ArUco Original, 5 x 5 bits: what LARC 2026 asks for (mark.h), found by libapriltag through a family of the ids looked
-// for, smaller marks than 32 px in the picture at twice its size. On drawn frames of 640x480 with 0 to 8 mm of motion blur
-// that finds 100 of 100 marks, 0.2 to 0.4 mm and 0.2 to 0.3 degrees off, in 6.4 ms; at 1280x720 in 4.4 ms. OpenCV's
-// detector takes 1.4 ms there, but finds 94 to 99 with the one window that suits this size of mark (pixels 5 or 11: 43 to
-// 96), 0.5 mm and 0.8 degrees off. Without the enlarging libapriltag finds all up to 6 mm of blur and 57 at 8 mm, in 2 ms.
+// for; marks smaller than 32 px once more in the picture at twice its size, where not all were seen. On drawn frames of
+// 640x480 with 0 to 8 mm of motion blur that finds 100 of 100, 0.2 to 0.4 mm and 0.2 to 0.3 degrees off, in 2 ms or, both
+// times, 8.4 ms; at 1280x720 in 4.4 ms. OpenCV's detector takes 1.4 ms, but finds 94 to 99 with the one window that suits
+// this size of mark (5 or 11 px: 43 to 96), 0.5 mm and 0.8 degrees off. Without the larger picture libapriltag finds all
+// up to 6 mm of blur and 57 at 8 mm.
 #define VS_TAG_ARUCO "aruco"
 
 // The pattern of one tag: cells x cells, row 0 is the top edge, 0 black, 255 white.

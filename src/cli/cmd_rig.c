@@ -9,6 +9,8 @@
 
 typedef struct options {
   const char *opponent, *team, *folder, *rules, *drive, *truth, *lcm, *own_tags, *their_tags;
+  vs_rig_optics optics;
+  bool white_walls;
   double seconds;
   int matches, seed, width, height, rt;
   bool no_lcm, help;
@@ -45,6 +47,10 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
       {"height", VS_FLAG_INT, &o->height, "PX", "of the camera's pictures", 64, 2160},
       {"own-tags", VS_FLAG_TEXT, &o->own_tags, "KIND", "what the own team wears: april, aruco, colour", 0, 0},
       {"their-tags", VS_FLAG_TEXT, &o->their_tags, "KIND", "what the other team wears: patch, aruco, colour", 0, 0},
+      {"white-walls", VS_FLAG_SWITCH, &o->white_walls, NULL, "as LARC 2026 has them, instead of dark ones", 0, 0},
+      {"noise", VS_FLAG_REAL, &o->optics.noise, "GREYS", "of the camera: its deviation in grey levels", 0, 40},
+      {"uneven-light", VS_FLAG_REAL, &o->optics.uneven, "SHARE", "of the light that the darkest corner lacks", 0, 0.95},
+      {"blur", VS_FLAG_REAL, &o->optics.blur_px, "PX", "deviation of the lens's blur", 0, 3},
       {"dir", VS_FLAG_TEXT, &o->folder, "DIR", "where camera, radio and calib.ini are put", 0, 0},
       {"truth", VS_FLAG_TEXT, &o->truth, "FILE", "write the true world of every picture as CSV", 0, 0},
       {"rt", VS_FLAG_INT, &o->rt, "PRIO", "real-time priority, such as 40, and locked memory; 0: none", 0, 99},
@@ -59,6 +65,8 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
 static vs_status fill(const options *o, const char *folder, vs_rig_def *def, vs_error *err) {
   def->opponent = o->opponent;
   def->seed = (uint64_t)o->seed;
+  def->white_walls = o->white_walls;
+  def->optics = o->optics;
   def->width_px = o->width;
   def->height_px = o->height;
   def->folder = folder;

@@ -99,12 +99,13 @@ static vs_status load_model(vs_render *r, vs_error *err) {
 }
 
 // A venue's goals and robots' sides are dark: team colours only where a camera may look for them, on the caps.
-static void darken(mjModel *m) {
+static void darken(mjModel *m, bool white_walls) {
   static const char *const names[] = {"blue_goal", "yellow_goal", "blue_shell", "yellow_shell",
                                       "wheel",     "wall",        "hall"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
     int id = mj_name2id(m, mjOBJ_MATERIAL, names[i]);
-    for (int c = 0; c < 3 && id >= 0; c++) m->mat_rgba[4 * id + c] = 0.16f;
+    for (int c = 0; c < 3 && id >= 0; c++)
+      m->mat_rgba[4 * id + c] = white_walls && !strcmp(names[i], "wall") ? 0.9f : 0.16f;
   }
 }
 
@@ -123,7 +124,7 @@ static void set_quality(vs_render *r) {
   }
   for (int i = 0; i < m->nlight; i++) m->light_active[i] = !camera;
   for (int c = 0; c < 3; c++) r->lamp[c] = (float)m->light_dir[c];
-  if (camera) darken(m);
+  if (camera) darken(m, r->def.white_walls);
 }
 
 static void make_scene(vs_render *r) {

@@ -115,6 +115,7 @@ vs_status vs_rig_step(vs_rig *r, vs_rig_step_result *out, vs_error *err) {
   }
   if (s == VS_OK) s = vs_render_world(r->render, &r->truth, NULL, r->rgb, err);
   if (s != VS_OK) return s;
+  vs_optics_apply(&r->optics, r->rgb, r->truth.seq);
   vs_frame_server_put(r->camera, r->rgb, r->truth.time_us, r->truth.seq);
   out->skipped = due - 1;
   r->stats.late += due - 1;

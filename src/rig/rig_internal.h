@@ -1,6 +1,7 @@
 #ifndef VSSS_RIG_RIG_INTERNAL_H
 #define VSSS_RIG_RIG_INTERNAL_H
 
+#include "optics.h"
 #include "robots.h"
 #include "vsss/bus.h"
 #include "vsss/env.h"
@@ -14,6 +15,7 @@ struct vs_rig {
   vs_env *env;
   vs_render *render;
   uint8_t *rgb;
+  vs_optics optics;
   vs_frame_server *camera;
   vs_robots robots;
   vs_bus *bus;

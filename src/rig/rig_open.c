@@ -55,10 +55,12 @@ static vs_status open_render(vs_rig *r, vs_error *err) {
   def.width_px = r->def.width_px;
   def.height_px = r->def.height_px;
   def.camera_height_m = r->def.camera_height_m;
+  def.white_walls = r->def.white_walls;
   vs_status s = vs_render_new(&def, &r->render, err);
   if (s != VS_OK) return s;
   r->rgb = malloc((size_t)def.width_px * (size_t)def.height_px * 3);
-  return r->rgb ? VS_OK : vs_fail(err, VS_FAIL, "out of memory");
+  if (!r->rgb) return vs_fail(err, VS_FAIL, "out of memory");
+  return vs_optics_open(&r->optics, &r->def.optics, def.width_px, def.height_px, r->def.seed, err);
 }
 
 // The calibration that a perfect measurement of this camera would give.
@@ -131,6 +133,7 @@ void vs_rig_free(vs_rig *r) {
   if (r->calibrated) unlink(r->calib_path);
   vs_render_free(r->render);
   vs_env_free(r->env);
+  vs_optics_close(&r->optics);
   free(r->rgb);
   free(r);
 }

@@ -20,7 +20,7 @@
 
 // Below this a picture holds no tag, and libapriltag 3.3 reads and writes beyond its buffers.
 #define LEAST_PX 64
-// Marks smaller than this are looked for in the picture at twice its size: see VS_TAG_ARUCO.
+// Marks smaller than this are looked for in the picture at twice its size, too, if not all are seen: see VS_TAG_ARUCO.
 #define SMALL_MARK_PX 32
 
 typedef struct family {
@@ -186,10 +186,7 @@ static void enlarge(const vs_frame *f, uint8_t *out) {
   }
 }
 
-// How much larger than the frame the picture is that marks are looked for in; where it is, large holds it.
-static vs_status make_large(vs_tag_detector *d, const vs_frame *frame, int *scale, vs_error *err) {
-  *scale = d->aruco && d->def.side_px > 0 && d->def.side_px < SMALL_MARK_PX ? 2 : 1;
-  if (*scale == 1) return VS_OK;
+static vs_status make_large(vs_tag_detector *d, const vs_frame *frame, vs_error *err) {
   size_t bytes = 4 * (size_t)frame->width * frame->height;
   if (bytes > d->large_bytes) {
     free(d->large);
@@ -212,29 +209,44 @@ static void take(const vs_tag_detector *d, const apriltag_detection_t *hit, doub
   }
 }
 
-vs_status vs_tag_detect(vs_tag_detector *detector, const vs_frame *frame, vs_tag *out, int capacity, int *count,
+// Looks at the picture at scale (1 or 2) times its size.
+static vs_status search(vs_tag_detector *d, const vs_frame *frame, int scale, vs_tag *out, int capacity, int *count,
+                        vs_error *err) {
+  *count = 0;
+  image_u8_t image = {.width = scale * frame->width,
+                      .height = scale * frame->height,
+                      .stride = scale == 2 ? 2 * frame->width : frame->grey_stride,
+                      .buf = scale == 2 ? d->large : (uint8_t *)frame->grey};
+  errno = 0;
+  zarray_t *found = apriltag_detector_detect(d->detector, &image);
+  if (!found) return vs_fail(err, VS_FAIL, "libapriltag: %s", errno ? strerror(errno) : "no result");
+  for (int i = 0; i < zarray_size(found) && *count < capacity; i++) {
+    apriltag_detection_t *hit;
+    zarray_get(found, i, &hit);
+    if (hit->hamming > d->def.max_hamming || hit->decision_margin < d->def.min_margin) continue;
+    take(d, hit, scale, &out[(*count)++]);
+  }
+  apriltag_detections_destroy(found);
+  qsort(out, *count, sizeof *out, by_id_then_x);
+  return VS_OK;
+}
+
+static bool all_found(const vs_tag_detector *d, const vs_tag *tag, int count) {
+  int different = 0;
+  for (int i = 0; i < count; i++) different += i == 0 || tag[i].id != tag[i - 1].id;
+  return different == d->ids;
+}
+
+vs_status vs_tag_detect(vs_tag_detector *d, const vs_frame *frame, vs_tag *out, int capacity, int *count,
                         vs_error *err) {
   *count = 0;
   if (frame->width < LEAST_PX || frame->height < LEAST_PX)
     return vs_fail(err, VS_USAGE, "a picture of %d x %d pixels: tags are looked for in at least %d x %d", frame->width,
                    frame->height, LEAST_PX, LEAST_PX);
-  int scale;
-  vs_status s = make_large(detector, frame, &scale, err);
-  if (s != VS_OK) return s;
-  image_u8_t image = {.width = scale * frame->width,
-                      .height = scale * frame->height,
-                      .stride = scale == 2 ? 2 * frame->width : frame->grey_stride,
-                      .buf = scale == 2 ? detector->large : (uint8_t *)frame->grey};
-  errno = 0;
-  zarray_t *found = apriltag_detector_detect(detector->detector, &image);
-  if (!found) return vs_fail(err, VS_FAIL, "libapriltag: %s", errno ? strerror(errno) : "no result");
-  for (int i = 0; i < zarray_size(found) && *count < capacity; i++) {
-    apriltag_detection_t *hit;
-    zarray_get(found, i, &hit);
-    if (hit->hamming > detector->def.max_hamming || hit->decision_margin < detector->def.min_margin) continue;
-    take(detector, hit, scale, &out[(*count)++]);
-  }
-  apriltag_detections_destroy(found);
-  qsort(out, *count, sizeof *out, by_id_then_x);
-  return VS_OK;
+  vs_status s = search(d, frame, 1, out, capacity, count, err);
+  bool small = d->aruco && d->def.side_px > 0 && d->def.side_px < SMALL_MARK_PX;
+  if (s != VS_OK || !small || all_found(d, out, *count)) return s;
+  // Some hide or are blurred: the larger picture costs three times as much and shows them.
+  s = make_large(d, frame, err);
+  return s == VS_OK ? search(d, frame, 2, out, capacity, count, err) : s;
 }
