@@ -58,6 +58,10 @@ $(B)/gen/league/%.o: build/gen/league/%.c
 $(B)/src/league_net/messages.o: build/gen/league/.made
 endif
 
+# The page of `vsss view`.
+FEATURE_EXCLUDE += $(call choose,CIVETWEB,src/view/web.c)
+FEATURE_LIBS += $(if $(HAVE_CIVETWEB),-lcivetweb)
+
 # The robots' firmware, which the rig runs; plain C that no other part of the program is in.
 FEATURE_OBJ += $(B)/deploy/firmware/firmware.o
 

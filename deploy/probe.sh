@@ -35,6 +35,7 @@ feature() {
 feature MUJOCO libmujoco-dev "physics (required)" /usr/include/mujoco/mujoco.h
 feature LCM liblcm-dev "messages, logger, replay, spy" /usr/include/lcm/lcm.h /usr/bin/lcm-gen
 feature PROTOBUFC libprotobuf-c-dev "the league's network: serve" /usr/include/protobuf-c/protobuf-c.h /usr/bin/protoc-c
+feature CIVETWEB libcivetweb-dev "the page of view" /usr/include/civetweb.h
 feature APRILTAG libapriltag-dev "robot tags" /usr/include/apriltag/apriltag.h
 feature OPENCV libopencv-dev "cameras, calibration, images" /usr/include/opencv4/opencv2/core.hpp
 feature JPEG libjpeg62-turbo-dev "cameras that give MJPG, faster" /usr/include/jpeglib.h

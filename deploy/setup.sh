@@ -50,6 +50,7 @@ liblcm-dev          messages between programs
 liblcm-bin          lcm-gen, lcm-logger, lcm-logplayer
 liblcm-java libjchart2d-java default-jre default-jdk-headless  ./vsss spy (lcm-spy is a Java program)
 libprotobuf-c-dev protobuf-c-compiler  the simulation league's network messages (serve)
+libcivetweb-dev     the page of ./vsss view
 libopencv-dev       cameras, calibration, images
 libapriltag-dev     robot tags
 libjpeg62-turbo-dev  pictures of MJPG cameras, faster than by OpenCV
@@ -76,6 +77,7 @@ if [ "$dev" ]; then
 clang-format cppcheck shellcheck  make lint
 python3-pip python3-venv  make wheel, tests of the Python package
 python3-torch       its examples that learn
+chromium-headless-shell  the test of view's page in a real browser
 iproute2            network namespaces, for the test of training on two hosts"
 fi
 

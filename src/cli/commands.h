@@ -14,6 +14,7 @@ int cmd_plot(int argc, char **argv);
 int cmd_bridge(int argc, char **argv);
 int cmd_replay(int argc, char **argv);
 int cmd_league(int argc, char **argv);
+int cmd_view(int argc, char **argv);
 int cmd_serve(int argc, char **argv);
 int cmd_spy(int argc, char **argv);
 

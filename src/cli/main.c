@@ -25,6 +25,7 @@ static const command commands[] = {
     {"train", cmd_train, "learn by self-play; writes a policy as ONNX"},
     {"bridge", cmd_bridge, "carry wheel commands from LCM to the radio, and telemetry back"},
     {"plot", cmd_plot, "figures of a training run"},
+    {"view", cmd_view, "a match in the browser, from a log or live"},
     {"replay", cmd_replay, "show a log of lcm-logger as text or video, or send it again"},
     {"spy", cmd_spy, "who says what on LCM, in a window or in the terminal"},
     {NULL, NULL, NULL},
