@@ -18,7 +18,8 @@ typedef struct options {
   const char *camera, *radio, *policy, *team, *attack, *calib, *config, *lcm, *stats, *record, *fallback;
   const char *own_tags, *their_tags;
   double seconds;
-  int seed, rt;
+  uint64_t seed;
+  int rt;
   bool no_lcm, help;
 } options;
 
@@ -44,7 +45,7 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
        "what theirs wear: patch, aruco, colour; default: field.ini's", 0, 0},
       {"config", VS_FLAG_TEXT, &o->config, "FILE", "instead of deploy/config/field.ini", 0, 0},
       {"seconds", VS_FLAG_REAL, &o->seconds, "S", "then stop; 0: until Ctrl-C or the recording's end", 0, 86400},
-      {"seed", VS_FLAG_INT, &o->seed, "N", "of a policy that draws", 0, 2147483647},
+      {"seed", VS_FLAG_SEED, &o->seed, "N", "of a policy that draws", 0, 0},
       {"stats", VS_FLAG_TEXT, &o->stats, "FILE", "write the latencies and counters as JSON at the end", 0, 0},
       {"record", VS_FLAG_TEXT, &o->record, "FILE", "write every frame's tracked world as CSV; valid: seen in it", 0, 0},
       {"rt", VS_FLAG_INT, &o->rt, "PRIO", "real-time priority, such as 50, and locked memory; 0: none", 0, 99},
@@ -82,7 +83,7 @@ static vs_status fill(const options *o, vs_field_config *config, vs_error *err) 
     return vs_fail(err, VS_USAGE, "--attack %s: expected +x or -x", attack);
   def->tracker.attack_plus_x = !strcmp(attack, "+x");
   def->calib = o->calib;
-  def->seed = (uint64_t)o->seed;
+  def->seed = o->seed;
   def->lcm = !o->no_lcm;
   def->lcm_url = o->lcm;
   return VS_OK;

@@ -12,7 +12,8 @@ typedef struct options {
   vs_rig_optics optics;
   bool white_walls;
   double seconds;
-  int matches, seed, width, height, rt;
+  uint64_t seed;
+  int matches, width, height, rt;
   bool no_lcm, help;
 } options;
 
@@ -42,7 +43,7 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
       {"matches", VS_FLAG_INT, &o->matches, "N", "then stop; 0: until Ctrl-C", 0, 1000000},
       {"rules", VS_FLAG_TEXT, &o->rules, "RULES", "paper or league", 0, 0},
       {"drive", VS_FLAG_TEXT, &o->drive, "DRIVE", "contact or planar", 0, 0},
-      {"seed", VS_FLAG_INT, &o->seed, "N", "of placements and opponents", 0, 2147483647},
+      {"seed", VS_FLAG_SEED, &o->seed, "N", "of placements and opponents", 0, 0},
       {"width", VS_FLAG_INT, &o->width, "PX", "of the camera's pictures", 64, 3840},
       {"height", VS_FLAG_INT, &o->height, "PX", "of the camera's pictures", 64, 2160},
       {"own-tags", VS_FLAG_TEXT, &o->own_tags, "KIND", "what the own team wears: april, aruco, colour", 0, 0},
@@ -64,7 +65,7 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
 
 static vs_status fill(const options *o, const char *folder, vs_rig_def *def, vs_error *err) {
   def->opponent = o->opponent;
-  def->seed = (uint64_t)o->seed;
+  def->seed = o->seed;
   def->white_walls = o->white_walls;
   def->optics = o->optics;
   def->width_px = o->width;
