@@ -17,7 +17,7 @@
 typedef struct view_command {
   const char *address, *lcm;
   int port;
-  bool live;
+  bool live, truth; // truth: it is heard, so that the measured state beside it is not shown
   double seconds;
 
   vs_view *view;
@@ -96,6 +96,8 @@ static void on_message(const vs_message *m, void *user) {
   view_command *c = user;
   char text[1100];
   if (!keep(c, m)) return;
+  if (m->channel == VS_CH_TRUTH) c->truth = true;
+  if (m->channel == VS_CH_STATE && c->truth) return;
   int64_t now_us = vs_clock_monotonic_us();
   if (now_us - c->sent_us < 25000 && !*c->event) return;
   c->sent_us = now_us;
