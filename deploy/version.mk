@@ -9,6 +9,8 @@ COMMIT ?= $(shell [ -e .git ] && git describe --always --dirty --abbrev=12 2>/de
 # Written when it changes, so that main.c alone is compiled again.
 $(shell mkdir -p build/gen; line='#define VSSS_COMMIT "$(COMMIT)"'; \
   [ "$$line" = "$$(cat build/gen/vsss_commit.h 2>/dev/null)" ] || printf '%s\n' "$$line" > build/gen/vsss_commit.h)
+# Said here: -MMD leaves out what lies in a folder of -isystem.
+$(B)/src/cli/main.o: build/gen/vsss_commit.h
 
 FEATURES := LCM APRILTAG OPENCV EGL ONNXRUNTIME ONEDNN OPENBLAS TORCH MPI
 list = $(shell echo '$(strip $(1))' | sed 's/ /, /g' | tr 'A-Z' 'a-z')
