@@ -1,17 +1,14 @@
 #!/bin/sh
 # Runs the benchmarks of peer projects beside ours, in one run on one core, and prints ours, theirs and the ratio.
 #   peers.sh BUILD_FOLDER [--install | --python]     --python: only what the Python package is compared with
-# VSSS_PEERS          folder of the peers' benchmark scripts (default ../shared/tools/peers beside the checkout)
 # VSSS_PEERS_PYTHONS  folder of one Python environment per peer: rsim psim rsoccer sb3 envpool
 #                     (default build/peers; --install makes them with python3.10, 3.11 and 3.12 where those exist)
 # A peer that is not installed is named and left out.
 set -u
 folder=$1
-scripts=${VSSS_PEERS:-../shared/tools/peers}
 pythons=${VSSS_PEERS_PYTHONS:-build/peers}
-[ -d "$scripts" ] || { echo "peers: no folder $scripts; set VSSS_PEERS" >&2; exit 1; }
 mkdir -p "$pythons" "$folder/peers"
-scripts=$(cd "$scripts" && pwd)
+scripts=$PWD/tests/bench/peers
 pythons=$(cd "$pythons" && pwd)
 scratch=$(cd "$folder/peers" && pwd) # some peers leave files where they run
 
@@ -44,15 +41,19 @@ if [ "${2:-}" = --install ]; then
   exit
 fi
 
-# run NAME SCRIPT KEY ARGUMENTS...: prints the number at KEY of the JSON line the script prints.
+# run NAME SCRIPT ARGUMENTS...: the "peer KEY VALUE" lines of tests/bench/peers/SCRIPT.py, run by the Python of peer NAME;
+# peer KEY gives the last of them.
+theirs=""
 run() {
-  name=$1 script=$2 key=$3
-  shift 3
+  name=$1 script=$2
+  shift 2
   [ -x "$pythons/$name/bin/python" ] || { echo "peers: $name is not installed (tests/bench/peers.sh $folder --install)" >&2; return 1; }
-  (cd "$scratch" && exec taskset -c 1 "$pythons/$name/bin/python" "$scripts/$script" "$@" 2>"$scratch/log") |
-    grep '^{' | tail -n 1 | sed -n "s/.*\"$key\": *\({\"[0-9]*\": *\)\{0,1\}\([0-9.]*\).*/\2/p" | grep . ||
-    { echo "peers: $name ($script) failed: $(tail -n 1 "$scratch/log")" >&2; return 1; }
+  said=$(cd "$scratch" && PYTHONDONTWRITEBYTECODE=1 taskset -c 1 "$pythons/$name/bin/python" "$scripts/$script.py" "$@" 2>"$scratch/log" |
+    grep '^peer ') || { echo "peers: $name ($script) failed: $(tail -n 1 "$scratch/log")" >&2; return 1; }
+  theirs="$theirs
+$said"
 }
+peer() { printf '%s\n' "$theirs" | awk -v n="$1" '$1 == "peer" && $2 == n {v = $3} END {if (v != "") print v}'; }
 
 # ours: "bench NAME VALUE UNIT" lines of our own benchmarks, run now on the same core.
 ours=$([ "${2:-}" = --python ] || for what in env learn; do
@@ -74,24 +75,23 @@ compare_core() {
   learner_fp32=$(our learner_fp32_transitions_per_s_1_core)
   whole=$(our train_transitions_per_s_1_core)
 
-  rsim=$(run rsim bench_rsim_raw.py sim_s_per_wall_s --seconds 8)
-  rsim_hold=$(run rsim bench_rsim_raw.py sim_s_per_wall_s --seconds 8 --hold 40)
-  psim=$(run psim bench_psim.py sim_s_per_wall_s --env raw --seconds 8)
-  psim_zoo=$(run psim bench_psim.py sim_s_per_wall_s --env zoo --seconds 8)
-  rsoccer=$(run rsoccer bench_rsoccer_gym.py sim_s_per_wall_s --api gym --seconds 8)
-  envpool=$(run envpool bench_envpool_soccer.py sim_s_per_wall_s)
-  compare planar/rsim_raw "$planar" "$rsim" "simulated s/s"
-  compare planar/rsim_raw_with_contacts "$planar" "$rsim_hold" "simulated s/s"
-  compare contact/rsim_raw "$contact" "$rsim" "simulated s/s"
-  compare contact/rsim_raw_with_contacts "$contact" "$rsim_hold" "simulated s/s"
-  compare planar/rsoccer_environment "$planar" "$rsoccer" "simulated s/s"
-  compare planar/psim_raw_2d "$planar" "$psim" "simulated s/s"
-  compare planar/psim_environment "$planar" "$psim_zoo" "simulated s/s"
-  compare planar/envpool_soccer "$planar" "$envpool" "simulated s/s"
-  torch=$(run sb3 bench_torch_ppo_learner.py transitions_per_s_at_epochs)
-  compare learner_fp32/torch_learner "$learner_fp32" "$torch" "transitions/s per core"
-  compare learner/torch_learner "$learner" "$torch" "transitions/s per core; bf16 where the processor has it"
-  compare train/envpool_soccer_torch_ppo "$whole" "$(run envpool bench_envpool_soccer_ppo.py transitions_per_s --seconds 30)" "transitions/s per core"
+  run rsim rsim
+  run psim psim
+  run rsoccer rsoccer
+  run envpool envpool_soccer
+  compare planar/rsim_raw "$planar" "$(peer rsim)" "simulated s/s"
+  compare planar/rsim_raw_with_contacts "$planar" "$(peer rsim_hold)" "simulated s/s"
+  compare contact/rsim_raw "$contact" "$(peer rsim)" "simulated s/s"
+  compare contact/rsim_raw_with_contacts "$contact" "$(peer rsim_hold)" "simulated s/s"
+  compare planar/rsoccer_environment "$planar" "$(peer rsoccer)" "simulated s/s"
+  compare planar/psim_raw_2d "$planar" "$(peer psim)" "simulated s/s"
+  compare planar/psim_environment "$planar" "$(peer psim_zoo)" "simulated s/s"
+  compare planar/envpool_soccer "$planar" "$(peer envpool)" "simulated s/s"
+  run sb3 torch_learner
+  compare learner_fp32/torch_learner "$learner_fp32" "$(peer torch_learner)" "transitions/s per core"
+  compare learner/torch_learner "$learner" "$(peer torch_learner)" "transitions/s per core; bf16 where the processor has it"
+  run envpool envpool_ppo
+  compare train/envpool_soccer_torch_ppo "$whole" "$(peer envpool_ppo)" "transitions/s per core"
 }
 
 # The Python package on the same core: environments one beside one, and PPO of the same library on both.
@@ -103,13 +103,13 @@ ours_python() { # NAME of the environment of a peer, what...
     tests/bench/bench_python.py "$@" 2>"$scratch/log" || echo "peers: bench_python failed: $(tail -n 1 "$scratch/log")" >&2
 }
 compare_python() {
+  [ "$theirs" ] || { run rsoccer rsoccer; run psim psim; run envpool envpool_soccer; }
   ours="$ours
 $(ours_python sb3 envs)"
-  compare python_vss_v0/rsoccer_vss_v0 "$(our python_vss_v0_steps)" "$(run rsoccer bench_rsoccer_gym.py steps_per_s --api gym --seconds 8)" "steps of 25 ms/s"
-  psim_rate=$(run psim bench_psim.py steps_per_s --env zoo --seconds 8)
-  compare python_parallel_env/psim_environment "$(our python_parallel_env_steps)" "$(echo "$psim_rate" | awk '{print $1 * 6}')" "robots' transitions/s, theirs 1/60 s, ours 1/10 s"
-  compare python_vec_64_both/envpool_soccer "$(our python_vec_64_both_steps)" "$(run envpool bench_envpool_soccer.py player_transitions_per_s)" "players' transitions/s, theirs 25 ms, ours 100 ms"
-  sb3_rsoccer=$(run sb3 bench_sb3_rsoccer.py transitions_per_s --seconds 30)
+  compare python_vss_v0/rsoccer_vss_v0 "$(our python_vss_v0_steps)" "$(peer rsoccer_steps)" "steps of 25 ms/s"
+  compare python_parallel_env/psim_environment "$(our python_parallel_env_steps)" "$(peer psim_zoo_steps | awk '{print $1 * 6}')" "robots' transitions/s, theirs 1/60 s, ours 1/10 s"
+  compare python_vec_64_both/envpool_soccer "$(our python_vec_64_both_steps)" "$(peer envpool_players)" "players' transitions/s, theirs 25 ms, ours 100 ms"
+  run sb3 sb3_rsoccer && sb3_defaults=$(peer sb3_rsoccer)
   # In turns, since other work on the machine comes and goes; medians.
   sb3_in_turns vss_v0_as_peers
   sb3_in_turns vss_v0_batch_512 --batch 512 --epochs 4
@@ -124,7 +124,7 @@ sb3_in_turns() {
   shift
   for turn in 1 2 3; do
     ours_python sb3 sb3 --sb3 "$how" --seconds 10
-    theirs=$(run sb3 bench_sb3_rsoccer.py transitions_per_s --seconds 10 "$@") && echo "bench theirs $theirs turn $turn"
+    run sb3 sb3_rsoccer --seconds 10 "$@" && echo "bench theirs $(peer sb3_rsoccer) turn $turn"
   done >"$scratch/turns"
   compare "python_sb3_$how/sb3_rsoccer" "$(awk -v n="python_sb3_$how" '$2 == n {print $3}' "$scratch/turns" | median)" \
     "$(awk '$2 == "theirs" {print $3}' "$scratch/turns" | median)" \
@@ -133,4 +133,4 @@ sb3_in_turns() {
 
 [ "${2:-}" = --python ] || compare_core
 compare_python
-[ "${2:-}" = --python ] || compare train/sb3_rsoccer "$whole" "$sb3_rsoccer" "transitions/s per core"
+[ "${2:-}" = --python ] || compare train/sb3_rsoccer "$whole" "${sb3_defaults:-}" "transitions/s per core"
