@@ -43,7 +43,11 @@ typedef struct vs_train_def {
   double learning_rate, learning_rate_end; // linear over transitions_m
   double adam_epsilon, max_gradient_norm;
   int epochs, minibatch, pieces;
-  bool canonical;     // the networks see one of the 24 symmetric versions of an observation (vsss/observe.h)
+  bool canonical; // the networks see one of the 24 symmetric versions of an observation (vsss/observe.h)
+  // ONNX files: the mean over all 24 versions in place of one answer, and another gain (0: action_gain). An average is
+  // smaller than what it is the average of.
+  bool export_average;
+  double export_gain;
   double action_gain; // action = action_gain times what the policy draws from [-1, 1], clipped
   char hidden[64];    // layer sizes, such as "256,256"
   double first_shape;

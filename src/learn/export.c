@@ -42,7 +42,7 @@ vs_status vs_learn_write_untrained(const char *path, uint64_t seed, vs_error *er
   char number[32];
   snprintf(number, sizeof number, "%llu", (unsigned long long)seed);
   const vs_onnx_note notes[] = {{"seed", number}, {"transitions", "0"}, {"command", "make"}};
-  const vs_export_def def = {"untrained", {false, 1.0}, true, notes, 3};
+  const vs_export_def def = {"untrained", {.action_gain = 1.0}, true, notes, 3};
   if (s == VS_OK) s = vs_export_actor(path, &net, parameters, &def, err);
   free(parameters);
   return s;

@@ -8,7 +8,7 @@
 #include "wire.h"
 
 // Numbers of onnx.proto (ONNX IR version 8, operator set 13: Split without sizes, Softplus, Gemm).
-enum { IR_VERSION = 8, OPSET = 13, TYPE_FLOAT = 1, TYPE_INT32 = 6, ATTRIBUTE_INT = 2 };
+enum { IR_VERSION = 8, OPSET = 13, TYPE_FLOAT = 1, TYPE_INT32 = 6, TYPE_INT64 = 7, ATTRIBUTE_INT = 2 };
 enum { MODEL_IR = 1, MODEL_PRODUCER = 2, MODEL_GRAPH = 7, MODEL_OPSET = 8, MODEL_META = 14 };
 enum { GRAPH_NODE = 1, GRAPH_NAME = 2, GRAPH_TENSOR = 5, GRAPH_INPUT = 11, GRAPH_OUTPUT = 12 };
 enum { NODE_INPUT = 1, NODE_OUTPUT = 2, NODE_NAME = 3, NODE_OP = 4, NODE_ATTRIBUTE = 5 };
@@ -54,6 +54,16 @@ static void scalar(vs_bytes *graph, const char *name, const float *value) {
   vs_wire_int(&t, 2, TYPE_FLOAT);
   vs_wire_text(&t, 8, name);
   vs_wire_bytes(&t, 9, value, sizeof *value);
+  vs_wire_message(graph, GRAPH_TENSOR, &t);
+}
+
+// The target of a Reshape.
+static void shape(vs_bytes *graph, const char *name, const int64_t sizes[2]) {
+  vs_bytes t = {0};
+  vs_wire_int(&t, 1, 2);
+  vs_wire_int(&t, 2, TYPE_INT64);
+  vs_wire_text(&t, 8, name);
+  vs_wire_bytes(&t, 9, sizes, 2 * sizeof *sizes);
   vs_wire_message(graph, GRAPH_TENSOR, &t);
 }
 
@@ -130,6 +140,42 @@ static void canonical_nodes(vs_bytes *graph) {
   node(graph, "Mul", (const char *[]){"moved", "sign", NULL}, (const char *[]){"canonical", NULL}, NULL, 0);
 }
 
+// observation[N][464] -> versions[24 N][464], all symmetric versions of each row one after the other.
+static void version_nodes(vs_bytes *graph) {
+  static const int64_t row_shape[2] = {-1, VS_OBS_SIZE};
+  float sign[VS_SYMMETRIES * VS_OBS_SIZE];
+  int32_t index[VS_SYMMETRIES * VS_OBS_SIZE];
+  vs_symmetry_table table;
+  vs_symmetry_table_init(&table);
+  for (int i = 0; i < VS_SYMMETRIES * VS_OBS_SIZE; i++) {
+    int version = i / VS_OBS_SIZE, k = i % VS_OBS_FRAME, frame = i % VS_OBS_SIZE - k;
+    index[i] = frame + table.index[version][k];
+    sign[i] = table.sign[version][k];
+  }
+  tensor_of(graph, TYPE_INT32, "indices", index, 0, VS_SYMMETRIES * VS_OBS_SIZE, 0);
+  tensor(graph, "signs", sign, 0, VS_SYMMETRIES * VS_OBS_SIZE, 0);
+  shape(graph, "row_shape", row_shape);
+  node(graph, "Gather", (const char *[]){"observation", "indices", NULL}, (const char *[]){"moved", NULL}, "axis", 1);
+  node(graph, "Mul", (const char *[]){"moved", "signs", NULL}, (const char *[]){"turned", NULL}, NULL, 0);
+  node(graph, "Reshape", (const char *[]){"turned", "row_shape", NULL}, (const char *[]){"versions", NULL}, NULL, 0);
+}
+
+// Of each observation's 24 answers ([24 N][2], left and right as each version saw them) the mean, [N][2].
+static void mean_nodes(vs_bytes *graph, const char *answers, const char *flat, const char *mean) {
+  node(graph, "Reshape", (const char *[]){answers, "answer_shape", NULL}, (const char *[]){flat, NULL}, NULL, 0);
+  node(graph, "MatMul", (const char *[]){flat, "averaging", NULL}, (const char *[]){mean, NULL}, NULL, 0);
+}
+
+static void averaging_tensors(vs_bytes *graph) {
+  static const int64_t answer_shape[2] = {-1, VS_SYMMETRIES * VS_ACTION_SIZE};
+  float averaging[VS_SYMMETRIES][VS_ACTION_SIZE][VS_ACTION_SIZE] = {{{0}}};
+  for (int v = 0; v < VS_SYMMETRIES; v++)
+    for (int k = 0; k < VS_ACTION_SIZE; k++)
+      averaging[v][k][vs_symmetry_mirrored(v) ? 1 - k : k] = 1.0f / VS_SYMMETRIES;
+  shape(graph, "answer_shape", answer_shape);
+  tensor(graph, "averaging", &averaging[0][0][0], VS_SYMMETRIES * VS_ACTION_SIZE, VS_ACTION_SIZE, VS_ACTION_SIZE);
+}
+
 static void layer_nodes(vs_bytes *graph, const vs_onnx_layer *l, int index, bool last, const char *input) {
   char in[32], weight[32], bias[32], sum[32], out[32];
   snprintf(in, sizeof in, "hidden%d", index);
@@ -144,10 +190,13 @@ static void layer_nodes(vs_bytes *graph, const vs_onnx_layer *l, int index, bool
   tensor(graph, bias, l->bias, 0, l->out, l->out);
 }
 
-// head[N][4] -> alpha, beta[N][2] -> action[N][2] = gain (alpha - beta)/(alpha + beta), clipped.
+// head[][4] -> alpha, beta[][2] -> their mean (alpha - beta)/(alpha + beta), over the versions where there are some ->
+// action[N][2] = gain times that, clipped.
 static void beta_head(vs_bytes *graph, const vs_policy_io *io) {
-  static const float one = 1.0f;
+  static const float one = 1.0f, limits[2] = {-1.0f, 1.0f};
   const float gain = (float)io->action_gain;
+  const bool average = io->average;
+  const char *alpha = average ? "alphas" : "alpha", *beta = average ? "betas" : "beta";
   tensor(graph, "one", &one, 0, 1, 1);
   if (io->canonical)
     node(graph, "GatherElements", (const char *[]){"head", "wheel_order", NULL}, (const char *[]){"raw", NULL}, "axis",
@@ -155,14 +204,17 @@ static void beta_head(vs_bytes *graph, const vs_policy_io *io) {
   node(graph, "Softplus", (const char *[]){io->canonical ? "raw" : "head", NULL}, (const char *[]){"positive", NULL},
        NULL, 0);
   node(graph, "Add", (const char *[]){"positive", "one", NULL}, (const char *[]){"shape", NULL}, NULL, 0);
-  node(graph, "Split", (const char *[]){"shape", NULL}, (const char *[]){"alpha", "beta", NULL}, "axis", 1);
-  node(graph, "Sub", (const char *[]){"alpha", "beta", NULL}, (const char *[]){"difference", NULL}, NULL, 0);
-  node(graph, "Add", (const char *[]){"alpha", "beta", NULL}, (const char *[]){"total", NULL}, NULL, 0);
-  const bool amplified = gain != 1.0f;
-  node(graph, "Div", (const char *[]){"difference", "total", NULL},
-       (const char *[]){amplified ? "mean" : "action", NULL}, NULL, 0);
-  if (!amplified) return;
-  static const float limits[2] = {-1.0f, 1.0f};
+  node(graph, "Split", (const char *[]){"shape", NULL}, (const char *[]){alpha, beta, NULL}, "axis", 1);
+  node(graph, "Sub", (const char *[]){alpha, beta, NULL}, (const char *[]){"difference", NULL}, NULL, 0);
+  node(graph, "Add", (const char *[]){alpha, beta, NULL}, (const char *[]){"total", NULL}, NULL, 0);
+  node(graph, "Div", (const char *[]){"difference", "total", NULL}, (const char *[]){average ? "means" : "mean", NULL},
+       NULL, 0);
+  if (average) {
+    averaging_tensors(graph);
+    mean_nodes(graph, "means", "means_flat", "mean");
+    mean_nodes(graph, alpha, "alphas_flat", "alpha");
+    mean_nodes(graph, beta, "betas_flat", "beta");
+  }
   tensor(graph, "gain", &gain, 0, 1, 1);
   scalar(graph, "lowest", &limits[0]);
   scalar(graph, "highest", &limits[1]);
@@ -180,14 +232,18 @@ static void note(vs_bytes *model, const char *key, const char *value) {
 
 vs_status vs_onnx_write(const char *path, const vs_onnx_policy *policy, vs_error *err) {
   const vs_onnx_layer *first = &policy->layer[0], *last = &policy->layer[policy->layers - 1];
+  if (policy->io.canonical && policy->io.average)
+    return vs_fail(err, VS_USAGE, "%s: the canonical version and the average over all exclude each other", path);
   if (first->in != VS_OBS_SIZE || last->out != 2 * VS_ACTION_SIZE)
     return vs_fail(err, VS_FAIL, "%s: network is %d -> %d, the contract wants %d -> %d", path, first->in, last->out,
                    VS_OBS_SIZE, 2 * VS_ACTION_SIZE);
   vs_bytes model = {0}, graph = {0}, opset = {0};
-  if (policy->io.canonical) canonical_nodes(&graph);
-  const char *input = policy->io.canonical ? "canonical" : "observation";
+  const vs_policy_io *io = &policy->io;
+  if (io->canonical) canonical_nodes(&graph);
+  if (io->average) version_nodes(&graph);
+  const char *input = io->canonical ? "canonical" : io->average ? "versions" : "observation";
   for (int i = 0; i < policy->layers; i++) layer_nodes(&graph, &policy->layer[i], i, i + 1 == policy->layers, input);
-  beta_head(&graph, &policy->io);
+  beta_head(&graph, io);
   vs_wire_text(&graph, GRAPH_NAME, policy->name);
   port(&graph, GRAPH_INPUT, "observation", VS_OBS_SIZE);
   port(&graph, GRAPH_OUTPUT, "action", VS_ACTION_SIZE);

@@ -6,8 +6,10 @@
 
 typedef struct vs_policy_io {
   bool canonical; // the network sees the canonical one of the symmetric versions (vsss/observe.h)
-  double
-      action_gain; // action = action_gain (2 u - 1), clipped to [-1, 1]: above 1 full speed is no edge of the density
+  // Files only: the network is asked about all symmetric versions, and the mean of its answers is the action.
+  bool average;
+  // action = action_gain (2 u - 1), clipped to [-1, 1]: above 1 full speed is no edge of the density.
+  double action_gain;
 } vs_policy_io;
 
 #endif

@@ -13,7 +13,14 @@
 #include "train_matches.h"
 #include "vsss/clock.h"
 
-static vs_policy_io policy_io(const vs_train_def *def) { return (vs_policy_io){def->canonical, def->action_gain}; }
+static vs_policy_io training_io(const vs_train_def *def) {
+  return (vs_policy_io){.canonical = def->canonical, .action_gain = def->action_gain};
+}
+
+static vs_policy_io export_io(const vs_train_def *def) {
+  double gain = def->export_gain > 0.0 ? def->export_gain : def->action_gain;
+  return (vs_policy_io){.canonical = def->canonical, .average = def->export_average, .action_gain = gain};
+}
 
 static vs_learner_def learner_def(const vs_train_def *def, const vs_net_shape *shape) {
   return (vs_learner_def){.shape = *shape,
@@ -100,7 +107,7 @@ static vs_status make_league_and_rollout(vs_train *t, vs_error *err) {
   // Every rank plays its own matches.
   uint64_t seed = vs_seed_mix(t->def.seed, 1000 + (uint64_t)vs_group_rank(t->group));
   s = vs_league_init(&t->league, &league, t->def.envs, actor.size, t->actor, seed, err);
-  const vs_rollout_def def = {t->def.envs, t->def.steps, t->def.gamma, t->def.lambda, seed, policy_io(&t->def)};
+  const vs_rollout_def def = {t->def.envs, t->def.steps, t->def.gamma, t->def.lambda, seed, training_io(&t->def)};
   if (s == VS_OK) s = vs_rollout_init(&t->rollout, &def, &t->learner, &t->league, err);
   return s;
 }
@@ -333,6 +340,6 @@ vs_status vs_train_export(const vs_train *train, const char *path, bool with_spr
                             {"learner", vs_train_products(train)}};
   int count = OWN;
   for (; notes && notes[0] && count < MAX; notes += 2) note[count++] = (vs_onnx_note){notes[0], notes[1]};
-  const vs_export_def def = {"vsss", policy_io(&train->def), with_spread, note, count};
+  const vs_export_def def = {"vsss", export_io(&train->def), with_spread, note, count};
   return vs_export_actor(path, &train->learner.net, train->learner.parameters, &def, err);
 }

@@ -51,8 +51,10 @@ vs_train_def vs_train_def_default(void) {
       .epochs = 3,
       .minibatch = 1024,
       .pieces = 4,
-      .canonical = true,
+      .canonical = false,
       .action_gain = 1.4,
+      .export_average = true,
+      .export_gain = 2.0,
       .hidden = "256,256",
       .first_shape = 4.0,
       .learner = "own",
@@ -69,6 +71,8 @@ static void without_levers(vs_train_def *def) {
   def->start_open = def->start_penalty = def->start_free_ball = 0.0;
   def->canonical = false;
   def->action_gain = 1.0;
+  def->export_average = false;
+  def->export_gain = 0.0;
 }
 
 void vs_train_def_before(vs_train_def *def) {
@@ -160,6 +164,8 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       WHOLE(pieces, 1, 64, "parts a minibatch is computed in (results depend on it, not on threads)"),
       SWITCH(canonical, "networks see the canonical one of an observation's mirror images and numberings"),
       REAL(action_gain, 1, 4, "the policy's output times this, clipped, is the wheel command"),
+      SWITCH(export_average, "policy files ask the network about all 24 symmetric versions and take the mean"),
+      REAL(export_gain, 0, 4, "action_gain of policy files; 0: as in training"),
       TEXT(hidden, "layer sizes of both networks"),
       REAL(first_shape, 1.01, 100, "alpha = beta of the untrained policy"),
       TEXT(learner, "own (kernels over BLAS) or torch"),
@@ -267,6 +273,8 @@ vs_status vs_train_def_check(const vs_train_def *def, vs_error *err) {
   if (s != VS_OK) return s;
   if (precision == VS_PRECISION_BF16 && !strcmp(def->learner, "torch"))
     return vs_fail(err, VS_USAGE, "precision = bf16: is for learner = own; torch computes in fp32");
+  if (def->canonical && def->export_average)
+    return vs_fail(err, VS_USAGE, "canonical and export_average exclude each other: set one of them to false");
   if (def->still_high_s < def->still_low_s)
     return vs_fail(err, VS_USAGE, "still_high_s = %g: must not be below still_low_s = %g", def->still_high_s,
                    def->still_low_s);

@@ -206,6 +206,9 @@ static void wrong_settings_are_refused_with_the_allowed_range(void **state) {
   assert_refused("train --set reward=dense,fame=1", 2, "own_distance");
   assert_refused("train --opponent nobody", 2, "opponent 'nobody'");
   assert_refused("train --learner brain", 2, "own or torch");
+  assert_refused("train --set canonical=true --set export_average=true", 2, "exclude each other");
+  assert_refused("train --set still_low_s=9 --set still_high_s=3", 2, "must not be below still_low_s");
+  assert_refused("train --set start_open=0.8 --set start_penalty=0.3", 2, "at most 1");
   assert_refused("train --set precision=fp16", 2, "expected fp32, bf16 or auto");
   assert_refused("train --set precision=bf16 --learner torch", 2, "torch computes in fp32");
   assert_refused("train --resume /nowhere", 1, "/nowhere/checkpoint");

@@ -89,6 +89,7 @@ static void a_mirrored_observation_drives_mirrored_wheels(void **state) {
   (void)state;
   vs_train *t = open_tiny("self", 7);
   vs_rollout *r = &t->rollout;
+  r->def.io.canonical = true;
   assert_ok(t->matches.reset(t->matches.self, &r->io, err));
   for (int row = 0; row < r->rows; row++) {
     float *newest = r->io.observation + (row + 1) * VS_OBS_SIZE - VS_OBS_FRAME;

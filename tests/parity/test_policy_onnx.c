@@ -57,7 +57,7 @@ static void write_model_with(const vs_net *net, const float *parameters, vs_poli
 }
 
 static void write_model(const vs_net *net, const float *parameters) {
-  write_model_with(net, parameters, (vs_policy_io){false, 1.0});
+  write_model_with(net, parameters, (vs_policy_io){.action_gain = 1.0});
 }
 
 static vs_status open_file(vs_player **player, vs_error *err) {
@@ -110,7 +110,7 @@ static void a_canonical_amplified_policy_agrees_with_plain_c(void **state) {
   vs_player *player = NULL;
   vs_rng rng = vs_rng_make(9, 0);
   make_net(&net, &parameters);
-  write_model_with(&net, parameters, (vs_policy_io){true, 1.4});
+  write_model_with(&net, parameters, (vs_policy_io){.canonical = true, .action_gain = 1.4});
   assert_ok(open_file(&player, err));
   for (int i = 0; i < N * VS_OBS_SIZE; i++) obs[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
   for (int i = 0; i < N; i += 10) {
@@ -137,6 +137,46 @@ static void a_canonical_amplified_policy_agrees_with_plain_c(void **state) {
   assert_true(mirrored > N / 4 && mirrored < 3 * N / 4);
   assert_true(clipped < N);
   vs_player_close(player);
+  free(obs);
+  free(parameters);
+}
+
+// A file that averages: the mean of the plain network's answers to all 24 versions, each turned back, times the gain.
+// What it does in the mirror image of a situation is the mirror image of what it does, to the last digits.
+static void an_averaging_policy_agrees_with_plain_c_and_is_symmetric(void **state) {
+  (void)state;
+  enum { N = 30 };
+  vs_net net;
+  float *parameters, *obs = malloc(N * VS_OBS_SIZE * sizeof *obs), *turned = malloc(N * VS_OBS_SIZE * sizeof *obs);
+  float action[N * 2], turned_action[N * 2];
+  vs_symmetry_table table;
+  vs_player *player = NULL;
+  vs_rng rng = vs_rng_make(10, 0);
+  make_net(&net, &parameters);
+  write_model_with(&net, parameters, (vs_policy_io){.average = true, .action_gain = 2.0});
+  assert_ok(open_file(&player, err));
+  for (int i = 0; i < N * VS_OBS_SIZE; i++) obs[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
+  assert_ok(vs_player_act(player, obs, N, action, err));
+  vs_symmetry_table_init(&table);
+  double spread = 0;
+  for (int i = 0; i < N; i++) {
+    double sum[2] = {0};
+    for (int v = 0; v < VS_SYMMETRIES; v++) {
+      float shown[VS_OBS_SIZE];
+      double mean[2];
+      vs_symmetry_apply(&table, v, obs + i * VS_OBS_SIZE, shown);
+      plain_forward(&net, parameters, shown, mean);
+      for (int k = 0; k < 2; k++) sum[k] += mean[k ^ vs_symmetry_mirrored(v)] / VS_SYMMETRIES;
+    }
+    for (int k = 0; k < 2; k++) assert_near(action[2 * i + k], fmin(fmax(2.0 * sum[k], -1.0), 1.0), 2e-5);
+    spread = fmax(spread, fabs(sum[0]));
+  }
+  assert_true(spread > 0.05);
+  for (int i = 0; i < N; i++) vs_symmetry_apply(&table, 12 + i % 12, obs + i * VS_OBS_SIZE, turned + i * VS_OBS_SIZE);
+  assert_ok(vs_player_act(player, turned, N, turned_action, err));
+  for (int i = 0; i < 2 * N; i++) assert_near(turned_action[i ^ 1], action[i], 1e-5);
+  vs_player_close(player);
+  free(turned);
   free(obs);
   free(parameters);
 }
@@ -223,7 +263,7 @@ static void a_network_of_other_sizes_is_not_written(void **state) {
   assert_ok(vs_net_init(&net, &shape, err));
   float *parameters = calloc(net.size, sizeof *parameters);
   vs_error err = {0};
-  const vs_export_def def = {"test", {false, 1.0}, false, NULL, 0};
+  const vs_export_def def = {"test", {.action_gain = 1.0}, false, NULL, 0};
   assert_int_equal(vs_export_actor(file, &net, parameters, &def, &err), VS_FAIL);
   assert_non_null(strstr(err.text, "463 -> 4"));
   free(parameters);
@@ -286,6 +326,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(onnx_runtime_agrees_with_plain_c_on_1000_observations),
       cmocka_unit_test(a_canonical_amplified_policy_agrees_with_plain_c),
+      cmocka_unit_test(an_averaging_policy_agrees_with_plain_c_and_is_symmetric),
       cmocka_unit_test(a_truncated_file_is_refused_at_every_length),
       cmocka_unit_test(a_model_of_another_contract_is_refused),
       cmocka_unit_test(a_network_of_other_sizes_is_not_written),
