@@ -18,7 +18,14 @@ typedef struct vs_match_result {
   int score[VS_TEAMS];
   int events[VS_TEAMS][VS_EVENT_KINDS]; // by the team the event names: goals scored, penalties and goal kicks taken
   int idle_warnings[VS_TEAMS], idle_sent_off[VS_TEAMS]; // idle.h, whatever the match's rules
+  int goals_from[VS_TEAMS][VS_EVENT_KINDS]; // goals within VS_SET_PLAY_S of a restart, by its kind; NONE: open play
+  double still_s;                           // the ball was slower than VS_LEAGUE_STUCK_MPS
+  vs_event_kind set_play;                   // the restart before and its time; NONE: the first kick-off
+  double set_play_s;
 } vs_match_result;
+
+// A goal this soon after a kick-off, penalty, free ball or goal kick came of it.
+#define VS_SET_PLAY_S 5.0
 
 typedef struct vs_series_def {
   vs_env_def env;
@@ -39,7 +46,7 @@ vs_status vs_series_play(const vs_series_def *def, vs_match_result *results, vs_
 // Plays one match to its end in an env that was made for it.
 vs_status vs_match_play(vs_env *env, uint64_t seed, bool (*go_on)(void *context), void *context, vs_match_result *out,
                         vs_error *err);
-// Adds one event of the match to its counts.
+// Adds one event of the match to its counts, a goal to those of the restart it came of.
 void vs_match_count(vs_match_result *result, const vs_event *event);
 // The same for all that a frame brought. idle: all zero at the start of the match.
 void vs_match_watch(vs_match_result *result, vs_idle *idle, const vs_env *env, const vs_event *event);
@@ -62,6 +69,8 @@ typedef struct vs_series_summary {
   vs_estimate score; // paper (17): (goals for - goals against) / matches
   double penalties_for, penalties_against, free_balls, goal_kicks;
   double idle_warnings[VS_TEAMS], idle_sent_off[VS_TEAMS];
+  double penalty_goals_for, penalty_goals_against, free_ball_goals_for, free_ball_goals_against;
+  double still_share; // of the time played
   double mean_time_s;
 } vs_series_summary;
 vs_status vs_series_sum_up(const vs_match_result *results, int n, vs_series_summary *out, vs_error *err);

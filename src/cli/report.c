@@ -45,17 +45,22 @@ void vs_report_table_row(FILE *out, const char *against, const vs_series_summary
 }
 
 void vs_report_restarts_head(FILE *out) {
-  fprintf(out, "%-12s %13s %17s %10s %10s %9s %14s\n", "a match", "penalties for", "penalties against", "free balls",
-          "goal kicks", "seconds", "idle, sent off");
+  fprintf(out, "%-12s %11s %11s %17s %10s %7s %7s %18s\n", "a match", "penalties", "against", "free balls",
+          "goal kicks", "still %", "seconds", "idle, sent off");
 }
 
 void vs_report_restarts_row(FILE *out, const char *against, const vs_series_summary *s) {
   char idle[64];
   snprintf(idle, sizeof idle, "%.1f:%.1f  %.1f:%.1f", s->idle_warnings[VS_BLUE], s->idle_warnings[VS_YELLOW],
            s->idle_sent_off[VS_BLUE], s->idle_sent_off[VS_YELLOW]);
+  char won[24], conceded[24], free_balls[32];
+  snprintf(won, sizeof won, "%.1f (%.2f)", s->penalties_for, s->penalty_goals_for);
+  snprintf(conceded, sizeof conceded, "%.1f (%.2f)", s->penalties_against, s->penalty_goals_against);
+  snprintf(free_balls, sizeof free_balls, "%.1f (%.2f:%.2f)", s->free_balls, s->free_ball_goals_for,
+           s->free_ball_goals_against);
   name_cell(out, against);
-  fprintf(out, " %13.2f %17.2f %10.2f %10.2f %9.1f %14s\n", s->penalties_for, s->penalties_against, s->free_balls,
-          s->goal_kicks, s->mean_time_s, idle);
+  fprintf(out, " %11s %11s %17s %10.1f %7.0f %7.1f %18s\n", won, conceded, free_balls, s->goal_kicks,
+          100.0 * s->still_share, s->mean_time_s, idle);
 }
 
 void vs_report_idle(FILE *out, const char *player, double warnings, double sent_off) {
@@ -82,14 +87,41 @@ static void columns_of(const vs_series_summary *s, column out[COLUMNS]) {
   memcpy(out, all, sizeof all);
 }
 
+// What has no interval.
+typedef struct plain {
+  const char *name;
+  double value;
+} plain;
+
+enum { PLAINS = 14 };
+static void plains_of(const vs_series_summary *s, plain out[PLAINS]) {
+  const plain all[PLAINS] = {{"penalties_for", s->penalties_for},
+                             {"penalties_against", s->penalties_against},
+                             {"free_balls", s->free_balls},
+                             {"goal_kicks", s->goal_kicks},
+                             {"mean_time_s", s->mean_time_s},
+                             {"idle_warnings", s->idle_warnings[VS_BLUE]},
+                             {"idle_warnings_against", s->idle_warnings[VS_YELLOW]},
+                             {"idle_sent_off", s->idle_sent_off[VS_BLUE]},
+                             {"idle_sent_off_against", s->idle_sent_off[VS_YELLOW]},
+                             {"penalty_goals_for", s->penalty_goals_for},
+                             {"penalty_goals_against", s->penalty_goals_against},
+                             {"free_ball_goals_for", s->free_ball_goals_for},
+                             {"free_ball_goals_against", s->free_ball_goals_against},
+                             {"still_share", s->still_share}};
+  memcpy(out, all, sizeof all);
+}
+
 void vs_report_csv_head(FILE *out) {
   vs_series_summary none = {0};
   column c[COLUMNS];
   columns_of(&none, c);
   fprintf(out, "blue,yellow,matches");
   for (int i = 0; i < COLUMNS; i++) fprintf(out, ",%s,%s_low,%s_high", c[i].name, c[i].name, c[i].name);
-  fprintf(out, ",penalties_for,penalties_against,free_balls,goal_kicks,mean_time_s,idle_warnings,idle_warnings_against,"
-               "idle_sent_off,idle_sent_off_against\n");
+  plain p[PLAINS];
+  plains_of(&none, p);
+  for (int i = 0; i < PLAINS; i++) fprintf(out, ",%s", p[i].name);
+  fprintf(out, "\n");
 }
 
 // A field of a CSV file: quoted where it holds a comma or a quote.
@@ -111,10 +143,10 @@ void vs_report_csv_row(FILE *out, const char *blue, const char *yellow, const vs
   column c[COLUMNS];
   columns_of(s, c);
   for (int i = 0; i < COLUMNS; i++) fprintf(out, ",%.6g,%.6g,%.6g", c[i].value.mean, c[i].value.low, c[i].value.high);
-  fprintf(out, ",%.6g,%.6g,%.6g,%.6g,%.6g", s->penalties_for, s->penalties_against, s->free_balls, s->goal_kicks,
-          s->mean_time_s);
-  fprintf(out, ",%.6g,%.6g,%.6g,%.6g\n", s->idle_warnings[VS_BLUE], s->idle_warnings[VS_YELLOW],
-          s->idle_sent_off[VS_BLUE], s->idle_sent_off[VS_YELLOW]);
+  plain p[PLAINS];
+  plains_of(s, p);
+  for (int i = 0; i < PLAINS; i++) fprintf(out, ",%.6g", p[i].value);
+  fprintf(out, "\n");
 }
 
 static void json_number(FILE *out, const char *name, double value) {
@@ -174,14 +206,11 @@ void vs_report_json_summary(FILE *out, const vs_series_summary *s) {
     json_number(out, "high", c[i].value.high);
     fprintf(out, "}");
   }
-  const column rest[] = {{"penalties_for", {s->penalties_for, 0, 0}},
-                         {"penalties_against", {s->penalties_against, 0, 0}},
-                         {"free_balls", {s->free_balls, 0, 0}},
-                         {"goal_kicks", {s->goal_kicks, 0, 0}},
-                         {"mean_time_s", {s->mean_time_s, 0, 0}}};
-  for (size_t i = 0; i < sizeof rest / sizeof *rest; i++) {
+  plain p[PLAINS];
+  plains_of(s, p);
+  for (int i = 0; i < PLAINS; i++) {
     fprintf(out, ", ");
-    json_number(out, rest[i].name, rest[i].value.mean);
+    json_number(out, p[i].name, p[i].value);
   }
   fprintf(out, "}");
 }

@@ -1,19 +1,34 @@
 // Many matches over threads, each a function of its own seed.
 #include "vsss/eval.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "vsss/pool.h"
 
-void vs_match_count(vs_match_result *result, const vs_event *event) { result->events[event->team][event->kind]++; }
+void vs_match_count(vs_match_result *result, const vs_event *event) {
+  result->events[event->team][event->kind]++;
+  if (event->kind == VS_EVENT_GOAL) {
+    vs_event_kind before = result->set_play == VS_EVENT_NONE ? VS_EVENT_KICK_OFF : result->set_play;
+    bool soon = event->time_s - result->set_play_s <= VS_SET_PLAY_S;
+    result->goals_from[event->team][soon ? before : VS_EVENT_NONE]++;
+  }
+  bool kick_off = event->kind == VS_EVENT_GOAL || event->kind == VS_EVENT_HALF_TIME;
+  if (!kick_off && event->kind != VS_EVENT_PENALTY && event->kind != VS_EVENT_FREE_BALL &&
+      event->kind != VS_EVENT_GOAL_KICK)
+    return;
+  result->set_play = kick_off ? VS_EVENT_KICK_OFF : event->kind;
+  result->set_play_s = event->time_s;
+}
 
 void vs_match_watch(vs_match_result *result, vs_idle *idle, const vs_env *env, const vs_event *event) {
   vs_world judged;
   vs_match_count(result, event);
   vs_env_judged(env, &judged);
   vs_idle_step(idle, &judged, event, 1.0 / VS_CAMERA_HZ);
+  if (hypot(judged.ball.vx_mps, judged.ball.vy_mps) < VS_LEAGUE_STUCK_MPS) result->still_s += 1.0 / VS_CAMERA_HZ;
   memcpy(result->idle_warnings, idle->warnings, sizeof result->idle_warnings);
   memcpy(result->idle_sent_off, idle->sent_off, sizeof result->idle_sent_off);
 }

@@ -65,6 +65,12 @@ static double mean_events(const vs_match_result *const *played, int n, int team,
   return n > 0 ? sum / n : NAN;
 }
 
+static double mean_goals_from(const vs_match_result *const *played, int n, int team, vs_event_kind kind) {
+  double sum = 0.0;
+  for (int i = 0; i < n; i++) sum += played[i]->goals_from[team][kind];
+  return n > 0 ? sum / n : NAN;
+}
+
 static void sum_up_played(const vs_match_result *const *played, int n, double *scratch, vs_series_summary *out) {
   out->matches = n;
   int won = 0, lost = 0;
@@ -81,13 +87,20 @@ static void sum_up_played(const vs_match_result *const *played, int n, double *s
       mean_events(played, n, VS_BLUE, VS_EVENT_FREE_BALL) + mean_events(played, n, VS_YELLOW, VS_EVENT_FREE_BALL);
   out->goal_kicks =
       mean_events(played, n, VS_BLUE, VS_EVENT_GOAL_KICK) + mean_events(played, n, VS_YELLOW, VS_EVENT_GOAL_KICK);
+  out->penalty_goals_for = mean_goals_from(played, n, VS_BLUE, VS_EVENT_PENALTY);
+  out->penalty_goals_against = mean_goals_from(played, n, VS_YELLOW, VS_EVENT_PENALTY);
+  out->free_ball_goals_for = mean_goals_from(played, n, VS_BLUE, VS_EVENT_FREE_BALL);
+  out->free_ball_goals_against = mean_goals_from(played, n, VS_YELLOW, VS_EVENT_FREE_BALL);
+  double still_s = 0.0;
   for (int i = 0; i < n; i++) {
     out->mean_time_s += played[i]->time_s / n;
+    still_s += played[i]->still_s / n;
     for (int t = 0; t < VS_TEAMS; t++) {
       out->idle_warnings[t] += (double)played[i]->idle_warnings[t] / n;
       out->idle_sent_off[t] += (double)played[i]->idle_sent_off[t] / n;
     }
   }
+  out->still_share = out->mean_time_s > 0.0 ? still_s / out->mean_time_s : 0.0;
 }
 
 vs_status vs_series_sum_up(const vs_match_result *results, int n, vs_series_summary *out, vs_error *err) {

@@ -94,6 +94,33 @@ static void summary_counts_finished_matches_from_blues_side(void **state) {
   assert_near(s.mean_time_s, 105.0, 1e-9); // (3 * 120 + 60) / 4
 }
 
+// A goal 4 s after a penalty is the penalty's, one 6 s after a free ball is of open play, and one 1 s after the kick-off
+// that follows it is the kick-off's. The ball lay still for 2 of 4 s.
+static void goals_are_counted_by_the_restart_they_came_of(void **state) {
+  (void)state;
+  vs_match_result m = {.played = true, .time_s = 4, .still_s = 2};
+  const struct {
+    vs_event_kind kind;
+    vs_team team;
+    double time_s;
+  } row[] = {{VS_EVENT_PENALTY, VS_BLUE, 10},   {VS_EVENT_GOAL, VS_BLUE, 14},     {VS_EVENT_FREE_BALL, VS_BLUE, 30},
+             {VS_EVENT_GOAL, VS_YELLOW, 36},    {VS_EVENT_GOAL, VS_YELLOW, 37},   {VS_EVENT_FREE_BALL, VS_BLUE, 50},
+             {VS_EVENT_GOAL, VS_YELLOW, 54.99}, {VS_EVENT_PENALTY, VS_YELLOW, 60}};
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+    const vs_event event = {.kind = row[i].kind, .team = row[i].team, .time_s = row[i].time_s};
+    vs_match_count(&m, &event);
+  }
+  assert_int_equal(m.goals_from[VS_BLUE][VS_EVENT_PENALTY], 1);
+  assert_int_equal(m.goals_from[VS_YELLOW][VS_EVENT_NONE], 1);
+  assert_int_equal(m.goals_from[VS_YELLOW][VS_EVENT_KICK_OFF], 1);
+  assert_int_equal(m.goals_from[VS_YELLOW][VS_EVENT_FREE_BALL], 1);
+  vs_series_summary s;
+  assert_ok(vs_series_sum_up(&m, 1, &s, err));
+  assert_near(s.penalty_goals_for, 1, 0);
+  assert_near(s.free_ball_goals_against, 1, 0);
+  assert_near(s.still_share, 0.5, 1e-9);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(interval_of_a_rate_is_the_binomial_one),
@@ -101,6 +128,7 @@ int main(void) {
       cmocka_unit_test(interval_of_equal_values_is_a_point_and_of_none_is_nan),
       cmocka_unit_test(interval_of_a_rate_has_a_width_at_its_ends),
       cmocka_unit_test(a_mirrored_match_is_the_other_teams),
+      cmocka_unit_test(goals_are_counted_by_the_restart_they_came_of),
       cmocka_unit_test(summary_counts_finished_matches_from_blues_side),
   };
   return cmocka_run_group_tests_name("eval/statistics", tests, NULL, NULL);
