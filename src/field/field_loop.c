@@ -47,7 +47,7 @@ const char *vs_stage_name(vs_stage stage) {
 }
 
 vs_field_def vs_field_def_default(void) {
-  return (vs_field_def){.policy = "onnx:",
+  return (vs_field_def){.policy = "onnx:models/policy/field.onnx", // holds its own where commands take time
                         .team = VS_BLUE,
                         .seed = 1,
                         .duration_s = 120,
