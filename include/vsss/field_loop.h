@@ -41,6 +41,8 @@ typedef struct vs_field_def {
   vs_camera_def camera_def;
   vs_detector_def detector;
   vs_track_def tracker;
+  bool go;             // the robots may move from the start, and after a FAULT by itself: for rigs and unattended tests
+  bool referee_goes;   // a referee on LCM releases the robots with each restart and stops them at half time
   bool lcm;            // publish, and listen to a referee
   double image_hz;     // pictures a second on VSSS_IMAGE, 0.1..5; 0: none
   const char *lcm_url; // NULL: the default one, without which we play on; given: failing to open it is an error
@@ -105,6 +107,9 @@ void vs_field_free(vs_field *field);
 // the tracker's prediction for VS_TRACK_HOLD_US; then, or when the camera or the player is gone, the robots stop until it
 // is back. VS_FAIL: a recording that cannot be read.
 vs_status vs_field_tick(vs_field *field, vs_field_tick_result *out, vs_error *err);
+
+// The operator's word: releases the robots, out of a FAULT too, or stops them at once. Until the first release they stand.
+void vs_field_arm(vs_field *field, bool go);
 
 void vs_field_get_stats(vs_field *field, vs_field_stats *out);
 const vs_tracker *vs_field_tracker(const vs_field *field); // robot[VS_OWN], robot[VS_ADVERSARY]

@@ -54,6 +54,7 @@ typedef struct vs_safety_input {
   vs_event_kind referee;              // what it last said: HALT and END stop, everything else lets play
   vs_team team;
   const vs_world *world; // tracked, absolute frame; NULL: none yet
+  bool seen_elsewhere;   // no world here: who commands sees the robots (a bridge)
   // Moment of the newest frame that control was stepped with, which decided or held the command on purpose; 0: none yet.
   int64_t command_us;
   vs_wheels wheels[VS_TEAM_SIZE]; // the command

@@ -53,7 +53,10 @@ static bool sane(const vs_safety_input *in) {
   return !in->world || vs_world_check(in->world, NULL) == VS_OK;
 }
 
-static bool seen(const vs_safety_input *in, int robot) { return in->world && in->world->robot[in->team][robot].valid; }
+static bool seen(const vs_safety_input *in, int robot) {
+  if (in->seen_elsewhere) return true;
+  return in->world && in->world->robot[in->team][robot].valid;
+}
 
 // A command that was on its way when the robots were stopped does not start them again.
 static bool fresh(const vs_safety *safety, const vs_safety_input *in) {

@@ -13,8 +13,9 @@
 
 #define LAST_FRAMES_US 5000 // between the stops on the way out
 #define DRAIN_MS       200
-#define SENDERS_MAX    4  // of one process, for the last stop
-#define SEQ_AHEAD      16 // of any frame that another thread is writing while the program dies
+#define LISTEN_US      5000 // telemetry is looked for this often, so that its round trip is true
+#define SENDERS_MAX    4    // of one process, for the last stop
+#define SEQ_AHEAD      16   // of any frame that another thread is writing while the program dies
 
 struct vs_sender {
   pthread_t thread;
@@ -102,7 +103,7 @@ static void *repeat(void *sender) {
     int64_t next_us = s->link.next_us;
     pthread_mutex_unlock(&s->lock);
     if (stop) return NULL;
-    vs_clock_sleep_until_us(next_us);
+    vs_clock_sleep_until_us(next_us < now_us + LISTEN_US ? next_us : now_us + LISTEN_US);
   }
 }
 

@@ -1,26 +1,54 @@
-// vsss bridge: VSSS_CMD from the bus to the robots' radio at 50 Hz, their telemetry back as VSSS_RADIO. For a radio on
-// another computer than the camera's; vsss field holds its own.
+// vsss bridge: VSSS_CMD from the bus to the robots' radio, their telemetry back as VSSS_RADIO. For a radio on another computer
+// than the camera's; vsss field holds its own. The same safety table and the same radio thread as the field's.
 #include <stdio.h>
 #include <string.h>
 
 #include "cli.h"
 #include "commands.h"
+#include "operator.h"
 #include "vsss/bus.h"
 #include "vsss/clock.h"
-#include "vsss/radio_link.h"
-#include "vsss/radio_serial.h"
+#include "vsss/safety.h"
+#include "vsss/sender.h"
 
-#define REPORT_US 100000 // telemetry on the bus: 10 Hz
-#define STATUS_US 500000 // the line on the terminal
+#define REPORT_US 100000  // telemetry on the bus: 10 Hz
+#define STATUS_US 500000  // the line on the terminal
+#define REST_US   1000000 // with --go a FAULT ends by itself after it
 
 typedef struct bridge {
   vs_team team;
+  const char *device;
   vs_bus *bus;
-  vs_serial *serial;
-  vs_radio_link link;
+  vs_sender *sender;
+  vs_safety safety;
+  bool go, armed, rearm;
+  vs_msg_cmd command; // the newest
+  int64_t decided_us; // when; monotonic
+  vs_radio_link link; // copies, renewed every turn
+  vs_serial_stats serial;
   int64_t commands, report_us, status_us;
   int32_t reports;
 } bridge;
+
+// The table's word on the newest command; now: it came in this moment.
+static void judge(bridge *b, bool now) {
+  int64_t now_us = vs_clock_monotonic_us();
+  bool fault = b->safety.state == VS_SAFETY_FAULT;
+  bool again = fault && (b->rearm || (b->go && now_us - b->safety.since_us > REST_US));
+  b->rearm = false;
+  vs_safety_input in = {.now_us = now_us,
+                        .armed = b->armed && !again,
+                        .referee = b->command.stop ? VS_EVENT_HALT : VS_EVENT_NONE,
+                        .team = b->team,
+                        .seen_elsewhere = true,
+                        .command_us = b->decided_us};
+  memcpy(in.wheels, b->command.wheels, sizeof in.wheels);
+  vs_safety_state before = b->safety.state;
+  vs_wheels out[VS_TEAM_SIZE];
+  bool stop = vs_safety_step(&b->safety, &in, out) != VS_SAFETY_RUNNING;
+  if (now || b->safety.state != before)
+    vs_sender_command(b->sender, out, stop, b->decided_us ? b->decided_us : now_us, true);
+}
 
 // Age by the sender's stamps; a sender whose clock runs ahead of ours counts as now.
 static void on_command(const vs_message *m, void *user) {
@@ -28,15 +56,15 @@ static void on_command(const vs_message *m, void *user) {
   if (m->as.cmd.team != b->team) return;
   int64_t stamp_us = m->utime_capture_us > 0 && m->utime_capture_us < m->utime_us ? m->utime_capture_us : m->utime_us;
   int64_t age_us = vs_clock_wall_us() - stamp_us;
-  vs_radio_link_command(&b->link, m->as.cmd.wheels, m->as.cmd.stop,
-                        vs_clock_monotonic_us() - (age_us > 0 ? age_us : 0));
+  b->command = m->as.cmd;
+  b->decided_us = vs_clock_monotonic_us() - (age_us > 0 ? age_us : 0);
   b->commands++;
+  judge(b, true);
 }
 
 static void send_report(bridge *b, int64_t now_us) {
   vs_message m = {.channel = VS_CH_RADIO, .seq = b->reports++};
-  vs_serial_stats stats = vs_serial_get_stats(b->serial);
-  vs_radio_link_report(&b->link, vs_serial_device(b->serial), &stats, now_us, &m.as.radio);
+  vs_radio_link_report(&b->link, b->device, &b->serial, now_us, &m.as.radio);
   int64_t newest_us = -1;
   for (int i = 0; i < VS_TEAM_SIZE; i++)
     if (b->link.robot[i].heard && b->link.robot[i].heard_us > newest_us) newest_us = b->link.robot[i].heard_us;
@@ -47,9 +75,10 @@ static void send_report(bridge *b, int64_t now_us) {
 
 static void show_status(const bridge *b, vs_progress *line) {
   if (!line->terminal) return;
-  vs_serial_stats s = vs_serial_get_stats(b->serial);
-  fprintf(stderr, "\r\033[K%s %s  %lld frames, %lld dropped  %s", vs_serial_device(b->serial), s.up ? "up" : "AWAY",
-          (long long)s.sent, (long long)s.dropped, b->link.stopping ? "STOP" : "driving");
+  const char *why = vs_safety_reason(b->safety.state);
+  fprintf(stderr, "\r\033[K%s %s  %lld frames, %lld dropped  %s%s", b->device, b->serial.up ? "up" : "AWAY",
+          (long long)b->serial.sent, (long long)b->serial.dropped, b->link.stopping ? "STOP " : "driving",
+          b->link.stopping ? why : "");
   if (b->link.command_age_us >= 0) fprintf(stderr, ", command %.0f ms old", (double)b->link.command_age_us * 1e-3);
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     const vs_radio_robot_state *r = &b->link.robot[i];
@@ -63,11 +92,8 @@ static void show_status(const bridge *b, vs_progress *line) {
 
 static void turn(bridge *b, vs_progress *line) {
   int64_t now_us = vs_clock_monotonic_us();
-  uint8_t bytes[512];
-  size_t size = vs_radio_link_due(&b->link, now_us, bytes);
-  if (size) vs_serial_write(b->serial, bytes, size, now_us);
-  while ((size = vs_serial_read(b->serial, bytes, sizeof bytes, now_us)) > 0)
-    vs_radio_link_receive(&b->link, bytes, size, now_us);
+  judge(b, false);
+  vs_sender_state(b->sender, &b->link, &b->serial);
   if (now_us >= b->report_us) {
     b->report_us = now_us + REPORT_US;
     send_report(b, now_us);
@@ -78,30 +104,20 @@ static void turn(bridge *b, vs_progress *line) {
   }
 }
 
-static vs_status loop(bridge *b, vs_error *err) {
+static vs_status loop(bridge *b, vs_operator *operator_, vs_error *err) {
   vs_progress line;
   vs_progress_start(&line);
   while (!vs_cli_interrupted()) {
+    char unknown[24];
+    vs_order order = vs_operator_poll(operator_, unknown);
+    if (order == VS_ORDER_QUIT) break;
+    if (order != VS_ORDER_NONE) b->armed = b->rearm = order == VS_ORDER_GO;
     turn(b, &line);
-    int64_t wait_us = b->link.next_us - vs_clock_monotonic_us();
-    // Telemetry is looked for at least every 5 ms, so that its round trip is true.
-    int wait_ms = wait_us <= 0 ? 0 : wait_us < 5000 ? (int)(wait_us / 1000) + 1 : 5;
-    vs_status s = vs_bus_handle(b->bus, wait_ms, NULL, err);
+    vs_status s = vs_bus_handle(b->bus, 5, NULL, err);
     if (s != VS_OK) return s;
   }
   vs_progress_clear(&line);
   return VS_OK;
-}
-
-// Stops the robots whatever happened before.
-static void stop(bridge *b) {
-  for (int i = 0; i < VS_RADIO_STOP_FRAMES; i++) {
-    uint8_t bytes[VS_RADIO_FRAME_MAX];
-    int64_t now_us = vs_clock_monotonic_us();
-    vs_serial_write(b->serial, bytes, vs_radio_link_stop(&b->link, now_us, bytes), now_us);
-    vs_clock_sleep_until_us(now_us + 5000);
-  }
-  vs_serial_drain(b->serial, 200);
 }
 
 static vs_status parse_ids(const char *text, uint8_t id[VS_TEAM_SIZE], vs_error *err) {
@@ -115,51 +131,63 @@ static vs_status parse_ids(const char *text, uint8_t id[VS_TEAM_SIZE], vs_error 
   return VS_OK;
 }
 
-static vs_status run(bridge *b, const char *device, int baud, const char *url, vs_error *err) {
-  vs_status s = vs_serial_open(device, baud, &b->serial, err);
+static vs_status run(bridge *b, int baud, const uint8_t id[VS_TEAM_SIZE], const char *url, vs_error *err) {
+  vs_operator operator_;
+  vs_safety_init(&b->safety, vs_clock_monotonic_us());
+  vs_status s = vs_sender_new(b->device, baud, id, &b->sender, err);
   if (s == VS_OK) s = vs_bus_open(url, &b->bus, err);
   if (s == VS_OK) s = vs_bus_subscribe(b->bus, VS_CH_CMD, false, on_command, b, err);
+  if (s == VS_OK) s = vs_operator_open(NULL, &operator_, err);
   if (s == VS_OK) {
     printf("bridge: %s commands from %s to %s; Ctrl-C stops the robots and ends\n", vs_team_name(b->team),
-           vs_bus_url(b->bus), vs_serial_device(b->serial));
+           vs_bus_url(b->bus), b->device);
+    if (!b->go) printf("the robots stand until they are told to go; keys: %s\n", VS_OPERATOR_KEYS);
     fflush(stdout);
     vs_cli_catch_interrupts();
-    s = loop(b, err);
-    stop(b);
-    vs_serial_stats stats = vs_serial_get_stats(b->serial);
-    printf("%lld commands, %lld frames sent, %lld dropped, %u telemetry frames, %u bad, device reopened %lld times\n",
-           (long long)b->commands, (long long)stats.sent, (long long)stats.dropped, b->link.decoder.ok,
-           b->link.decoder.bad, (long long)stats.reopened);
+    vs_cli_before_the_end(vs_sender_last_stop);
+    vs_sender_stop_at_crash();
+    s = loop(b, &operator_, err);
+    vs_operator_close(&operator_);
+    vs_sender_state(b->sender, &b->link, &b->serial);
   }
+  bool began = b->sender != NULL && b->bus != NULL;
+  vs_sender_free(b->sender); // stops the robots whatever happened before
+  if (began)
+    printf("%lld commands, %lld frames sent, %lld dropped, %u telemetry frames, %u bad, device reopened %lld times\n",
+           (long long)b->commands, (long long)b->serial.sent, (long long)b->serial.dropped, b->link.decoder.ok,
+           b->link.decoder.bad, (long long)b->serial.reopened);
   vs_bus_close(b->bus);
-  vs_serial_close(b->serial);
   return s;
 }
 
 int cmd_bridge(int argc, char **argv) {
   const char *device = NULL, *url = NULL, *team = "blue", *ids = "0,1,2";
   int baud = VS_SERIAL_BAUD;
+  bridge b = {.team = VS_BLUE};
   const vs_flag flags[] = {
       {"radio", VS_FLAG_TEXT, &device, "DEV", "serial device, such as /dev/ttyUSB0", 0, 0},
       {"baud", VS_FLAG_INT, &baud, "N", "its speed", 0, 0},
       {"team", VS_FLAG_TEXT, &team, "TEAM", "whose commands: blue or yellow", 0, 0},
       {"ids", VS_FLAG_TEXT, &ids, "A,B,C", "the robots' numbers on the air", 0, 0},
+      {"go", VS_FLAG_SWITCH, &b.go, NULL, "the robots may move at once, and after a fault by themselves", 0, 0},
       {"lcm", VS_FLAG_TEXT, &url, "URL", "the bus (LCM_DEFAULT_URL, else " VS_BUS_DEFAULT_URL ")", 0, 0},
       {NULL, VS_FLAG_SWITCH, NULL, NULL, NULL, 0, 0}};
   vs_error err = {0};
   bool help;
-  vs_status s = vs_args_parse(argc, argv, "bridge --radio DEV [flags]",
-                              "Carries VSSS_CMD to the robots at 50 Hz; a command older than 150 ms stops them.", flags,
-                              NULL, &help, &err);
+  vs_status s =
+      vs_args_parse(argc, argv, "bridge --radio DEV [flags]",
+                    "Carries VSSS_CMD to the robots at 50 Hz; a command older than 150 ms stops them. They stand\n"
+                    "until they are told to go (keys: " VS_OPERATOR_KEYS ").",
+                    flags, NULL, &help, &err);
   if (s == VS_OK && help) return 0;
-  bridge b = {.team = VS_BLUE};
   uint8_t id[VS_TEAM_SIZE] = {0};
   if (s == VS_OK && !device) s = vs_fail(&err, VS_USAGE, "--radio is needed, such as --radio /dev/ttyUSB0");
   if (s == VS_OK && strcmp(team, "blue") != 0 && strcmp(team, "yellow") != 0)
     s = vs_fail(&err, VS_USAGE, "--team %s: allowed are blue and yellow", team);
   if (s == VS_OK) s = parse_ids(ids, id, &err);
-  if (s == VS_OK) s = vs_radio_link_init(&b.link, id, &err);
   b.team = strcmp(team, "yellow") ? VS_BLUE : VS_YELLOW;
-  if (s == VS_OK) s = run(&b, device, baud, url, &err);
+  b.device = device;
+  b.armed = b.go;
+  if (s == VS_OK) s = run(&b, baud, id, url, &err);
   return s == VS_OK ? 0 : vs_cli_error("bridge", &err);
 }

@@ -8,6 +8,7 @@
 #include "field_config.h"
 #include "field_guest.h"
 #include "field_report.h"
+#include "operator.h"
 #include "vsss/clock.h"
 #include "vsss/field_loop.h"
 #include "vsss/frame_stream.h"
@@ -15,16 +16,17 @@
 #include "world_csv.h"
 
 typedef struct options {
-  const char *camera, *radio, *policy, *team, *attack, *calib, *config, *lcm, *stats, *record, *fallback;
+  const char *camera, *radio, *policy, *team, *attack, *calib, *config, *lcm, *stats, *record, *fallback, *referee;
   const char *own_tags, *their_tags;
   double seconds;
   uint64_t seed;
   int rt;
-  bool no_lcm, help;
+  bool no_lcm, go, help;
 } options;
 
 static const char about[] =
     "Newest frame -> tags -> poses -> tracked world -> policy -> wheels -> safety -> bytes to the radio, then LCM.\n"
+    "The robots stand until they are told to go (keys: " VS_OPERATOR_KEYS ").\n"
     "Ctrl-C stops the robots and prints where the time went. Without --radio it is a dry run.";
 
 static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
@@ -35,6 +37,9 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
       {"camera", VS_FLAG_TEXT, &o->camera, "SOURCE", camera_help, 0, 0},
       {"radio", VS_FLAG_TEXT, &o->radio, "DEVICE", "serial device of the robots' radio, or firasim:, travesim:", 0, 0},
       {"policy", VS_FLAG_TEXT, &o->policy, "URI", "who decides; default: field.ini's", 0, 0},
+      {"go", VS_FLAG_SWITCH, &o->go, NULL, "the robots may move at once: for rigs and unattended tests", 0, 0},
+      {"referee", VS_FLAG_TEXT, &o->referee, "lcm|FILE",
+       "says go and stop beside the keys: VSSS_REFEREE, or words in a pipe", 0, 0},
       {"fallback", VS_FLAG_TEXT, &o->fallback, "URI", "takes over when the policy fails", 0, 0},
       {"team", VS_FLAG_TEXT, &o->team, "TEAM", "ours: blue or yellow", 0, 0},
       {"attack", VS_FLAG_TEXT, &o->attack, "+x|-x", "towards which end of the calibration's frame we play", 0, 0},
@@ -82,6 +87,9 @@ static vs_status fill(const options *o, vs_field_config *config, vs_error *err) 
   if (strcmp(attack, "+x") && strcmp(attack, "-x"))
     return vs_fail(err, VS_USAGE, "--attack %s: expected +x or -x", attack);
   def->tracker.attack_plus_x = !strcmp(attack, "+x");
+  def->go = o->go;
+  def->referee_goes = o->referee && !strcmp(o->referee, "lcm");
+  if (def->referee_goes && o->no_lcm) return vs_fail(err, VS_USAGE, "--referee lcm: hears nobody with --no-lcm");
   def->calib = o->calib;
   def->seed = o->seed;
   def->lcm = !o->no_lcm;
@@ -116,6 +124,7 @@ static void print_setup(const vs_field *field, const vs_field_def *def, const ch
   else
     printf("radio   none: a dry run, no robot is driven (--radio DEVICE)\n");
   if (camera->exposure_ms > 5.0) printf("warning: exposed longer than 5 ms tags blur and robots in motion are lost\n");
+  if (!def->go) printf("robots  stand until they are told to go; keys: %s\n", VS_OPERATOR_KEYS);
   printf("%s", note);
   fflush(stdout);
 }
@@ -157,7 +166,23 @@ static void tell(vs_progress *progress, double at_s, const char *said) {
   fflush(stdout);
 }
 
-static vs_status run(const options *o, const vs_field_def *def, vs_field *field, vs_error *err) {
+// False: the operator ends play.
+static bool obey(vs_operator *operator_, vs_field *field, vs_progress *progress, double at_s) {
+  char unknown[24], text[96];
+  vs_order order = vs_operator_poll(operator_, unknown);
+  if (order == VS_ORDER_NONE) return true;
+  vs_field_arm(field, order == VS_ORDER_GO);
+  if (*unknown) {
+    snprintf(text, sizeof text, "referee: '%s' is none of go, stop, halt; stopped", unknown);
+    tell(progress, at_s, text);
+  } else if (order != VS_ORDER_QUIT) {
+    tell(progress, at_s, order == VS_ORDER_GO ? "go" : "stop");
+  }
+  return order != VS_ORDER_QUIT;
+}
+
+static vs_status run(const options *o, const vs_field_def *def, vs_operator *operator_, vs_field *field,
+                     vs_error *err) {
   vs_world_csv record;
   vs_status s = vs_world_csv_open(o->record, &record, err);
   if (s != VS_OK) return s;
@@ -167,6 +192,7 @@ static vs_status run(const options *o, const vs_field_def *def, vs_field *field,
   double spent_s = 0;
   while (!vs_cli_interrupted() && (o->seconds == 0.0 || spent_s < o->seconds)) {
     vs_field_tick_result tick;
+    if (!obey(operator_, field, &progress, spent_s)) break;
     s = vs_field_tick(field, &tick, err);
     if (s != VS_OK || tick.got == VS_CAMERA_END) break;
     spent_s = 1e-6 * (double)(vs_clock_monotonic_us() - start_us);
@@ -188,6 +214,7 @@ int cmd_field(int argc, char **argv) {
   static vs_field_config config;
   static vs_field_stats stats;
   vs_field *field = NULL;
+  vs_operator operator_ = {-1, -1, "", 0};
   char note[1200] = "", rig_calib[300];
   vs_camera_register(vs_frame_stream_camera());
   vs_status s = parse(argc, argv, &o, &err);
@@ -209,9 +236,14 @@ int cmd_field(int argc, char **argv) {
   vs_sender_stop_at_crash();
   if (o.rt) vs_cli_realtime(o.rt);
   s = vs_field_new(&config.def, &field, note, sizeof note, &err);
-  if (s != VS_OK) return vs_cli_error("field", &err);
+  if (s == VS_OK) s = vs_operator_open(o.referee && strcmp(o.referee, "lcm") ? o.referee : NULL, &operator_, &err);
+  if (s != VS_OK) {
+    vs_field_free(field);
+    return vs_cli_error("field", &err);
+  }
   print_setup(field, &config.def, note);
-  s = run(&o, &config.def, field, &err);
+  s = run(&o, &config.def, &operator_, field, &err);
+  vs_operator_close(&operator_);
   vs_field_get_stats(field, &stats);
   vs_field_free(field); // stops the robots
   vs_field_report_print(&stats);

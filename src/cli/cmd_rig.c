@@ -88,7 +88,7 @@ static void print_paths(const vs_rig *rig, const vs_rig_def *def, const char *no
   printf("camera  rig:%s  %dx%d, 30 pictures a second\n", vs_rig_camera_path(rig), def->width_px, def->height_px);
   printf("radio   %s\n", vs_rig_radio_path(rig));
   printf("calib   %s\n", vs_rig_calib_path(rig));
-  printf("play    vsss field --team %s --camera rig:%s --radio %s --calib %s", vs_team_name(def->team),
+  printf("play    vsss field --go --team %s --camera rig:%s --radio %s --calib %s", vs_team_name(def->team),
          vs_rig_camera_path(rig), vs_rig_radio_path(rig), vs_rig_calib_path(rig));
   if (def->own != VS_MARK_APRIL) printf(" --own-tags %s", vs_mark_name(def->own));
   if (def->their != VS_MARK_PATCH) printf(" --their-tags %s", vs_mark_name(def->their));

@@ -13,7 +13,8 @@
 #include "vsss/isolate.h"
 #include "vsss/sender.h"
 
-#define WAIT_MS 100 // for a frame; so that a dead camera does not make us deaf to Ctrl-C
+#define FAULT_REST_US 1000000
+#define WAIT_MS       100 // for a frame; so that a dead camera does not make us deaf to Ctrl-C
 
 struct vs_field {
   vs_field_def def;
@@ -24,6 +25,7 @@ struct vs_field {
   vs_tracker tracker;
   vs_control *control[2]; // the policy's and the fallback's (NULL: none)
   int plays;              // which of them
+  bool armed, rearm;      // the operator lets the robots move; and just said so again
   bool mindless;          // it failed and has not decided since
   vs_sender *sender;
   vs_tap tap;
@@ -119,6 +121,7 @@ vs_status vs_field_new(const vs_field_def *def, vs_field **out, char *note, size
   f->def = *def;
   f->game.duration_s = def->duration_s;
   f->came_us = vs_clock_monotonic_us();
+  f->armed = def->go;
   vs_safety_init(&f->safety, vs_clock_monotonic_us());
   // Before anything starts a thread: the players' processes are forked from here.
   vs_status s = open_brain(f, def->policy, &f->control[0], err);
@@ -157,6 +160,30 @@ static void mark(vs_field *f, vs_stage stage) {
   f->mark_us = now_us;
 }
 
+void vs_field_arm(vs_field *f, bool go) {
+  f->rearm = go;
+  if (f->armed == go) return;
+  f->armed = go;
+  if (go) return;
+  const vs_wheels still[VS_TEAM_SIZE] = {{0}};
+  vs_sender_command(f->sender, still, true, vs_clock_monotonic_us(), true); // not only with the next frame
+}
+
+static void obey_referee(vs_field *f, vs_event_kind kind) {
+  bool restart =
+      kind == VS_EVENT_KICK_OFF || kind == VS_EVENT_PENALTY || kind == VS_EVENT_FREE_BALL || kind == VS_EVENT_GOAL_KICK;
+  if (restart) vs_field_arm(f, true);
+  if (kind == VS_EVENT_HALF_TIME) vs_field_arm(f, false);
+}
+
+// A FAULT is left by being released again; where nobody is there to do so, after a second.
+static bool is_armed(vs_field *f, int64_t now_us) {
+  bool fault = f->safety.state == VS_SAFETY_FAULT;
+  bool again = fault && (f->rearm || (f->def.go && now_us - f->safety.since_us > FAULT_REST_US));
+  f->rearm = false;
+  return f->armed && !again;
+}
+
 // What a referee said: where play restarts the past counts no more.
 static void hear_referee(vs_field *f, int64_t now_us) {
   if (vs_tap_listen(&f->tap)) {
@@ -165,6 +192,7 @@ static void hear_referee(vs_field *f, int64_t now_us) {
     f->game.last_event = said->event;
     f->game.duration_s = said->duration_s;
     memcpy(f->game.score, said->score, sizeof f->game.score);
+    if (f->def.referee_goes) obey_referee(f, said->event.kind);
     vs_track_restart(&f->tracker);
     for (int i = 0; i < 2 && f->control[i]; i++) vs_control_restart(f->control[i]);
   }
@@ -199,8 +227,9 @@ static void say(vs_field *f, vs_field_tick_result *r, const char *format, const 
 static void judge(vs_field *f, int64_t moment_us, vs_field_tick_result *r) {
   const vs_object *ball = &f->tracker.ball;
   int64_t hold_us = llround(1e6 * f->def.ball_hold_s);
-  vs_safety_input in = {.now_us = vs_clock_monotonic_us(),
-                        .armed = true, // by having started the program
+  int64_t now_us = vs_clock_monotonic_us();
+  vs_safety_input in = {.now_us = now_us,
+                        .armed = is_armed(f, now_us),
                         .no_camera = !f->eyes.camera,
                         .no_ball = hold_us > 0 && (!ball->ever || r->world.time_us - ball->seen_us > hold_us),
                         .no_player = f->mindless,

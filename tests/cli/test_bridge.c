@@ -73,7 +73,7 @@ static bool start(venue *v) {
     int fd = open(v->out, O_CREAT | O_TRUNC | O_WRONLY, 0666);
     dup2(fd, STDOUT_FILENO);
     dup2(fd, STDERR_FILENO);
-    execl(binary, "vsss", "bridge", "--radio", vs_pty_path(v->pty), "--lcm", test_bus_url(), "--ids", "3,7,9",
+    execl(binary, "vsss", "bridge", "--go", "--radio", vs_pty_path(v->pty), "--lcm", test_bus_url(), "--ids", "3,7,9",
           (char *)NULL);
     _exit(127);
   }

@@ -88,7 +88,7 @@ static void field_plays_in_the_rig_with_true_poses_and_fresh_frames(void **state
     skip();
   }
   snprintf(arguments, sizeof arguments,
-           "field --rt 50 --policy emc: --camera rig:%s/venue/camera --radio "
+           "field --go --rt 50 --policy emc: --camera rig:%s/venue/camera --radio "
            "%s/venue/radio --calib %s/venue/calib.ini "
            "--seconds 18 --stats %s/stats.json --record %s/tracked.csv %s",
            folder, folder, folder, folder, folder, lcm);
@@ -167,7 +167,7 @@ static void interrupt_stops_the_robots_prints_the_latencies_and_exits_0(void **s
   vs_pty *pty;
   assert_ok(vs_pty_new(&pty, err));
   char arguments[512];
-  snprintf(arguments, sizeof arguments, "field --no-lcm --policy random: --camera rig:%s/still --radio %s", folder,
+  snprintf(arguments, sizeof arguments, "field --go --no-lcm --policy random: --camera rig:%s/still --radio %s", folder,
            vs_pty_path(pty));
   pid_t field = vsss_start(in_folder("field.log"), arguments);
   vs_radio_decoder decoder = {0};

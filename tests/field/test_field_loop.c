@@ -63,6 +63,7 @@ static vs_field *a_field(const char *policy, const char *lcm) {
   vs_field_def def = vs_field_def_default();
   def.camera = "fake:";
   def.policy = policy;
+  def.go = true;
   def.lcm = lcm != NULL;
   def.lcm_url = lcm;
   vs_field *field;
