@@ -10,7 +10,8 @@ skipped=0
 
 one_binary() {
   start=$(date +%s.%N)
-  if "$1" >"$1.log" 2>&1; then
+  # A run in the background ignores signals that the tests send to what they start.
+  if env --default-signal=HUP,INT,QUIT,TERM "$1" >"$1.log" 2>&1; then
     cases=$(sed -n 's/^\[  PASSED  \] \([0-9]*\) test.*/\1/p' "$1.log" | awk '{n += $1} END {print n + 0}')
     # cmocka names what was skipped where it happens and once more at the end.
     awk '/^note: /{why = ": " substr($0, 7)} /^\[  SKIPPED \] [^0-9]/ && !seen[$4]++ {print "skipped " file ": " $4 why; why = ""}' \

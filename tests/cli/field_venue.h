@@ -118,8 +118,10 @@ static inline void assert_within(const char *what, double ms, double limit_ms) {
 
 static inline void start_field(venue *v, const char *flags) {
   char arguments[1024];
-  snprintf(arguments, sizeof arguments, "field --go --no-lcm --camera rig:%s --radio %s %s", v->camera_path, v->radio_path,
-           flags);
+  // Where a referee says go and stop the robots wait for it.
+  const char *go = strstr(flags, "--referee") ? "" : "--go ";
+  snprintf(arguments, sizeof arguments, "field %s--no-lcm --camera rig:%s --radio %s %s", go, v->camera_path,
+           v->radio_path, flags);
   v->field = vsss_start(v->log_path, arguments);
 }
 

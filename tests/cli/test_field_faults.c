@@ -183,7 +183,6 @@ static void a_full_disk_does_not_end_play(void **state) {
 }
 
 int main(void) {
-  signal(SIGHUP, SIG_DFL); // a run under nohup ignores it, and the program would rightly do so too
   vs_camera_register(vs_frame_stream_camera());
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_camera_that_goes_away_stops_the_robots_and_play_goes_on),

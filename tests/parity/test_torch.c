@@ -38,7 +38,8 @@ static void onnx_runtime_agrees_with_torch_on_1000_observations(void **state) {
   char file[64], uri[80];
   snprintf(file, sizeof file, "build/torch_test_%d.onnx", (int)getpid());
   snprintf(uri, sizeof uri, "onnx:%s", file);
-  assert_ok(vs_export_actor(file, &net, parameters, &(vs_export_def){"test", {.action_gain = 1.0}, true, NULL, 0}, err));
+  assert_ok(
+      vs_export_actor(file, &net, parameters, &(vs_export_def){"test", {.action_gain = 1.0}, true, NULL, 0}, err));
   vs_player *player = NULL;
   vs_error err = {0};
   vs_status opened = vs_player_open(uri, &player, &err);
