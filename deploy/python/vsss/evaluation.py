@@ -24,6 +24,9 @@ class Evaluation:
         mean_time_s: length of a match.
         interval: (low, high) by name.
         scores: int [matches][2], own and theirs.
+
+    `./vsss eval` also tells what needs every frame of a match: the share of still ball, goals that came of penalties and
+    free balls, and who broke the idle rule.
     """
 
     against: str
