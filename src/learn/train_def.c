@@ -12,8 +12,9 @@
 #include "vsss/referee.h"
 #include "vsss/sim.h"
 
-// What trained the shipped policy, and what its export has gained since. The other levers (realism, start states, a
-// shorter still clock, canonical observations, a gain in training) are off: deploy/docs/strength.md says what they gave.
+// The settings that trained the shipped policy, and what its export has gained since. The other levers (realism, start
+// states, a shorter still clock, canonical observations, a gain in training) are off: deploy/docs/strength.md says what
+// they gave, and what differs from those runs all the same.
 vs_train_def vs_train_def_default(void) {
   return (vs_train_def){
       .drive = "planar",
