@@ -33,6 +33,8 @@ vs_calib vs_calib_overhead(int width, int height, double height_m, double vertic
 // INI. Loading checks ranges and that the rotation is one.
 vs_status vs_calib_load(const char *path, vs_calib *out, vs_error *err);
 vs_status vs_calib_save(const char *path, const vs_calib *calib, vs_error *err);
+// The same where nothing may be: VS_FAIL where there is something of this name, which is left as it is.
+vs_status vs_calib_create(const char *path, const vs_calib *calib, vs_error *err);
 // VS_FAIL where the camera's pictures have another size, naming both and the command that makes a new calibration.
 vs_status vs_calib_check_size(const vs_calib *calib, const char *path, int width, int height, vs_error *err);
 

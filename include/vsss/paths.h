@@ -2,6 +2,7 @@
 #ifndef VSSS_PATHS_H
 #define VSSS_PATHS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "vsss/status.h"
@@ -17,6 +18,11 @@ vs_status vs_path_find(const char *relative, char *out, size_t out_size, vs_erro
 
 // Makes a folder and those above it, as `mkdir -p` does; one that is there is left as it is.
 vs_status vs_path_make_folder(const char *path, unsigned mode, vs_error *err);
+
+// A folder of the user's own, for sockets and files that nobody else may plant, read or take away. Refused: a link, another
+// owner's, one that others may write into. make: it is made, mode 0700, where it is missing (those above it are not).
+// folder: a descriptor to lock it by and to close.
+vs_status vs_path_own_folder(const char *path, bool make, int *folder, vs_error *err);
 
 // The same for a shared library, named as it lies in a checkout, such as "build/lib/vsss_mpi.so": installed, it lies in
 // LIBDIR/vsss.

@@ -3,6 +3,7 @@
 
 #include <dlfcn.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <libgen.h>
 #include <limits.h>
 #include <stdio.h>
@@ -118,6 +119,36 @@ vs_status vs_path_make_folder(const char *path, unsigned mode, vs_error *err) {
   struct stat info;
   if (stat(path, &info) != 0) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
   return S_ISDIR(info.st_mode) ? VS_OK : vs_fail(err, VS_FAIL, "%s: is a file, not a folder", path);
+}
+
+vs_status vs_path_own_folder(const char *path, bool make, int *folder, vs_error *err) {
+  char name[PATH_MAX];
+  size_t length = strlen(path);
+  while (length > 1 && path[length - 1] == '/') length--; // a slash at the end would follow a link
+  if (length == 0 || length >= sizeof name) return vs_fail(err, VS_USAGE, "'%.100s': not the path of a folder", path);
+  memcpy(name, path, length);
+  name[length] = '\0';
+  if (make && mkdir(name, 0700) != 0 && errno != EEXIST)
+    return vs_fail(err, VS_FAIL, "%s: cannot make this folder: %s", name, strerror(errno));
+  struct stat info;
+  if (lstat(name, &info) == 0 && S_ISLNK(info.st_mode))
+    return vs_fail(err, VS_FAIL, "%s: is a link, which somebody else may have planted; give the folder itself", name);
+  int fd = open(name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  if (fd < 0 || fstat(fd, &info) != 0) {
+    int number = errno;
+    if (fd >= 0) close(fd);
+    return vs_fail(err, VS_FAIL, "%s: %s", name, strerror(number));
+  }
+  vs_status s = VS_OK;
+  if (info.st_uid != geteuid())
+    s = vs_fail(err, VS_FAIL, "%s: belongs to user %u, not to you; give another folder", name, (unsigned)info.st_uid);
+  else if (info.st_mode & 022)
+    s = vs_fail(err, VS_FAIL, "%s: others may write into it; 'chmod go-w' it or give another folder", name);
+  if (s != VS_OK)
+    close(fd);
+  else
+    *folder = fd;
+  return s;
 }
 
 vs_status vs_module_load(const char *name, const char *debian_package, void **handle, vs_error *err) {

@@ -3,6 +3,7 @@
 
 #include "optics.h"
 #include "robots.h"
+#include "venue.h"
 #include "vsss/bus.h"
 #include "vsss/env.h"
 #include "vsss/render.h"
@@ -20,7 +21,8 @@ struct vs_rig {
   vs_robots robots;
   vs_bus *bus;
   char camera_path[256], radio_path[256], calib_path[256];
-  bool linked, calibrated;        // radio_path, calib_path are ours to remove
+  vs_venue venue; // the folder of these three
+  vs_venue_file radio_file, calib_file;
   bool begun;                     // the first match
   double next_us;                 // moment of the next frame; 0: before the first
   uint32_t seq;                   // of pictures, drawn or skipped

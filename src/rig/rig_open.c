@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "rig_internal.h"
@@ -68,18 +67,17 @@ static vs_status write_calib(vs_rig *r, vs_error *err) {
   vs_pinhole p = vs_render_pinhole(r->render);
   vs_calib calib = vs_calib_overhead(p.width_px, p.height_px, p.height_m, 2.0 * atan(0.5 * p.height_px / p.focal_px));
   snprintf(calib.camera, sizeof calib.camera, "rig");
-  vs_status s = vs_calib_save(r->calib_path, &calib, err);
-  r->calibrated = s == VS_OK;
+  vs_status s = vs_calib_create(r->calib_path, &calib, err);
+  if (s == VS_OK) vs_venue_mine(r->calib_path, &r->calib_file);
   return s;
 }
 
 static vs_status open_radio(vs_rig *r, vs_error *err) {
   vs_status s = vs_robots_open(&r->robots, r->def.radio_id, vs_clock_monotonic_us(), err);
   if (s != VS_OK) return s;
-  unlink(r->radio_path); // of a rig that crashed
   if (symlink(vs_pty_path(r->robots.pty), r->radio_path))
     return vs_fail(err, VS_FAIL, "%s: %s", r->radio_path, strerror(errno));
-  r->linked = true;
+  vs_venue_mine(r->radio_path, &r->radio_file);
   return VS_OK;
 }
 
@@ -93,11 +91,6 @@ static vs_status open_bus(vs_rig *r, char *note, size_t note_size, vs_error *err
   return VS_OK;
 }
 
-static vs_status make_folder(const char *path, vs_error *err) {
-  if (mkdir(path, 0700) == 0 || errno == EEXIST) return VS_OK;
-  return vs_fail(err, VS_FAIL, "%s: cannot make this folder: %s", path, strerror(errno));
-}
-
 vs_status vs_rig_new(const vs_rig_def *def, vs_rig **out, char *note, size_t note_size, vs_error *err) {
   *out = NULL;
   if (note && note_size) *note = '\0';
@@ -108,10 +101,9 @@ vs_status vs_rig_new(const vs_rig_def *def, vs_rig **out, char *note, size_t not
   snprintf(r->camera_path, sizeof r->camera_path, "%s/camera", def->folder);
   snprintf(r->radio_path, sizeof r->radio_path, "%s/radio", def->folder);
   snprintf(r->calib_path, sizeof r->calib_path, "%s/calib.ini", def->folder);
-  vs_status s = open_match(r, err);
+  vs_status s = vs_venue_open(&r->venue, def->folder, r->camera_path, r->radio_path, r->calib_path, err);
+  if (s == VS_OK) s = open_match(r, err);
   if (s == VS_OK) s = open_render(r, err);
-  if (s == VS_OK) s = make_folder(def->folder, err);
-  // The socket first: it tells whether another rig lives in this folder.
   if (s == VS_OK) s = vs_frame_server_new(r->camera_path, def->width_px, def->height_px, VS_CAMERA_HZ, &r->camera, err);
   if (s == VS_OK) s = open_radio(r, err);
   if (s == VS_OK) s = write_calib(r, err);
@@ -129,8 +121,9 @@ void vs_rig_free(vs_rig *r) {
   vs_bus_close(r->bus);
   vs_frame_server_free(r->camera);
   vs_robots_close(&r->robots);
-  if (r->linked) unlink(r->radio_path);
-  if (r->calibrated) unlink(r->calib_path);
+  vs_venue_remove(r->radio_path, &r->radio_file);
+  vs_venue_remove(r->calib_path, &r->calib_file);
+  vs_venue_close(&r->venue);
   vs_render_free(r->render);
   vs_env_free(r->env);
   vs_optics_close(&r->optics);

@@ -12,6 +12,7 @@
 #include "vsss/clock.h"
 #include "vsss/frame_stream.h"
 #include "vsss/image.h"
+#include "vsss/paths.h"
 
 #define HELLO_MS 1000 // how long the server may take to say its hello
 
@@ -89,17 +90,30 @@ static vs_status shake_hands(client *c, vs_camera_info *info, vs_error *err) {
   return VS_OK;
 }
 
+// In the folder for passing files anybody may have made one of this name.
+static vs_status default_camera(client *c, vs_error *err) {
+  char folder[sizeof c->path];
+  int fd;
+  vs_rig_default_path("camera", c->path, sizeof c->path);
+  vs_rig_default_path("", folder, sizeof folder);
+  if (access(folder, F_OK) != 0) return VS_OK; // no rig: told where the camera is missing
+  vs_status s = vs_path_own_folder(folder, false, &fd, err);
+  if (s == VS_OK) close(fd);
+  return s;
+}
+
 static vs_status open_client(const char *rest, const vs_camera_def *def, void **handle, vs_camera_info *info,
                              vs_error *err) {
   (void)def; // the rig's own size and pace
   client *c = calloc(1, sizeof *c);
   if (!c) return vs_fail(err, VS_FAIL, "out of memory");
   c->fd = -1;
+  vs_status s = VS_OK;
   if (*rest)
     snprintf(c->path, sizeof c->path, "%s", rest);
   else
-    vs_rig_default_path("camera", c->path, sizeof c->path);
-  vs_status s = shake_hands(c, info, err);
+    s = default_camera(c, err);
+  if (s == VS_OK) s = shake_hands(c, info, err);
   if (s != VS_OK) {
     close_client(c);
     return s;

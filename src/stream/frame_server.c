@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -15,6 +16,7 @@
 
 struct vs_frame_server {
   char path[108];
+  ino_t inode; // of the socket at path
   vs_wire_hello hello;
   size_t bytes;
   int listener, wake[2]; // wake: a byte tells the sender to look at stop
@@ -99,7 +101,7 @@ static void *send_loop(void *server) {
   }
 }
 
-// A socket file that nobody listens to is left over from a crash.
+// A socket of ours that nobody listens to is left over from a crash. Anything else is not ours to take away.
 static vs_status bind_to(vs_frame_server *s, const char *path, vs_error *err) {
   struct sockaddr_un address = {.sun_family = AF_UNIX};
   if (strlen(path) >= sizeof address.sun_path - 8)
@@ -110,12 +112,21 @@ static vs_status bind_to(vs_frame_server *s, const char *path, vs_error *err) {
   if (s->listener < 0) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
   if (connect(s->listener, (struct sockaddr *)&address, sizeof address) == 0)
     return vs_fail(err, VS_FAIL, "%s: in use by another rig; stop it or give another --dir", path);
-  if (errno == ECONNREFUSED) unlink(path);
+  bool refused = errno == ECONNREFUSED;
+  struct stat info;
   close(s->listener);
+  if (lstat(path, &info) == 0) {
+    if (!refused || !S_ISSOCK(info.st_mode) || info.st_uid != geteuid())
+      return vs_fail(err, VS_FAIL, "%s: is already there and no rig left it; move it away or give another --dir", path);
+    unlink(path);
+  }
   s->listener = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (s->listener < 0 || bind(s->listener, (struct sockaddr *)&address, sizeof address) || listen(s->listener, 4))
     return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
-  snprintf(s->path, sizeof s->path, "%s", path); // ours to remove from here on
+  if (lstat(path, &info) == 0) {
+    snprintf(s->path, sizeof s->path, "%s", path); // ours to remove from here on
+    s->inode = info.st_ino;
+  }
   return VS_OK;
 }
 
@@ -160,7 +171,8 @@ void vs_frame_server_free(vs_frame_server *s) {
     close(s->wake[1]);
   }
   if (s->listener >= 0) close(s->listener);
-  if (*s->path) unlink(s->path);
+  struct stat info;
+  if (*s->path && lstat(s->path, &info) == 0 && info.st_ino == s->inode) unlink(s->path);
   pthread_mutex_destroy(&s->lock);
   pthread_cond_destroy(&s->put);
   free(s->newest);

@@ -1,8 +1,10 @@
 // The calibration file: INI, made to be read and compared by people.
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "vsss/calib.h"
 #include "vsss/config.h"
@@ -88,12 +90,8 @@ static void plain(const char *in, char *out, size_t size) {
   out[n] = '\0';
 }
 
-vs_status vs_calib_save(const char *path, const vs_calib *c, vs_error *err) {
-  char partial[4096], name[sizeof c->camera];
-  if (snprintf(partial, sizeof partial, "%s.part", path) >= (int)sizeof partial)
-    return vs_fail(err, VS_FAIL, "%s: path too long", path);
-  FILE *f = fopen(partial, "w");
-  if (!f) return vs_fail(err, VS_FAIL, "%s: %s", partial, strerror(errno));
+static void write_calib(FILE *f, const vs_calib *c) {
+  char name[sizeof c->camera];
   double lens[3], v[3];
   vs_calib_lens(c, lens);
   rotation_to_vector(c->rotation, v);
@@ -109,6 +107,15 @@ vs_status vs_calib_save(const char *path, const vs_calib *c, vs_error *err) {
           v[1], v[2]);
   fprintf(f, "\n[venue]\npoints = %d # 0: not measured\nrms_mm = %.4g\nworst_mm = %.4g\n", c->points, c->rms_mm,
           c->worst_mm);
+}
+
+vs_status vs_calib_save(const char *path, const vs_calib *c, vs_error *err) {
+  char partial[4096];
+  if (snprintf(partial, sizeof partial, "%s.part", path) >= (int)sizeof partial)
+    return vs_fail(err, VS_FAIL, "%s: path too long", path);
+  FILE *f = fopen(partial, "w");
+  if (!f) return vs_fail(err, VS_FAIL, "%s: %s", partial, strerror(errno));
+  write_calib(f, c);
   int failed = ferror(f);
   if (fclose(f) || failed || rename(partial, path)) {
     vs_status s = vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
@@ -116,6 +123,22 @@ vs_status vs_calib_save(const char *path, const vs_calib *c, vs_error *err) {
     return s;
   }
   return VS_OK;
+}
+
+vs_status vs_calib_create(const char *path, const vs_calib *c, vs_error *err) {
+  int fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  FILE *f = fd < 0 ? NULL : fdopen(fd, "w");
+  if (!f) {
+    vs_status s = vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
+    if (fd >= 0) close(fd);
+    return s;
+  }
+  write_calib(f, c);
+  int failed = ferror(f);
+  if (!fclose(f) && !failed) return VS_OK;
+  vs_status s = vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
+  unlink(path);
+  return s;
 }
 
 static vs_status parse_point(const char *path, int line, const char *text, vs_calib_point *out, vs_error *err) {

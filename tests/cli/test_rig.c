@@ -1,5 +1,7 @@
 // src/cli/cmd_rig.c, with src/rig/rig.c, src/rig/rig_open.c and
-// src/rig/robots.c
+// src/rig/robots.c, src/rig/venue.c
+#include <sys/stat.h>
+
 #include "assert_near.h"
 #include "cli/field_match.h"
 #include "vsss/calib.h"
@@ -140,6 +142,107 @@ static void a_second_rig_in_the_same_folder_is_refused(void **state) {
   assert_int_equal(vsss_wait(rig, 20), 0);
 }
 
+static void write_text(const char *path, const char *text) {
+  FILE *f = fopen(path, "w");
+  assert_non_null(f);
+  fputs(text, f);
+  fclose(f);
+}
+
+static void make_venue(void) {
+  char command[160];
+  snprintf(command, sizeof command, "rm -rf '%s' && mkdir -m 700 '%s'", venue, venue);
+  assert_int_equal(system(command), 0);
+}
+
+static void refuse_rig(const char *text) {
+  char arguments[128];
+  snprintf(arguments, sizeof arguments, "rig --no-lcm --matches 1 --seconds 1 --dir %s", venue);
+  assert_refused(arguments, 1, text);
+}
+
+static void files_that_no_rig_left_are_kept_and_named(void **state) {
+  (void)state;
+  static const char *const names[] = {"calib.ini", "radio", "camera"};
+  for (int i = 0; i < 3; i++) {
+    char path[128];
+    make_venue();
+    snprintf(path, sizeof path, "%s/%s", venue, names[i]);
+    write_text(path, "mine\n");
+    refuse_rig("is already there and no rig left it");
+    assert_string_equal(read_text(path), "mine\n");
+  }
+}
+
+// A link where a file is to be made would have its target overwritten.
+static void planted_links_are_refused_and_what_they_point_at_is_kept(void **state) {
+  (void)state;
+  static const char *const names[] = {"calib.ini", "calib.ini.part", "radio", "camera"};
+  char target[80], path[128];
+  snprintf(target, sizeof target, "%s/precious", folder);
+  for (int i = 0; i < 4; i++) {
+    make_venue();
+    write_text(target, "mine\n");
+    snprintf(path, sizeof path, "%s/%s", venue, names[i]);
+    assert_int_equal(symlink(target, path), 0);
+    if (i != 1) {
+      refuse_rig(names[i]);
+    } else {
+      pid_t rig = start_rig("");
+      if (!rig) return;
+      kill(rig, SIGINT);
+      assert_int_equal(vsss_wait(rig, 20), 0);
+    }
+    struct stat info;
+    assert_true(lstat(path, &info) == 0 && S_ISLNK(info.st_mode));
+    assert_string_equal(read_text(target), "mine\n");
+  }
+}
+
+static void a_folder_that_is_not_only_the_users_is_refused(void **state) {
+  (void)state;
+  char real[80];
+  snprintf(real, sizeof real, "%s/real", folder);
+  make_venue();
+  assert_int_equal(chmod(venue, 0777), 0);
+  refuse_rig("others may write into it");
+  assert_int_equal(rename(venue, real), 0);
+  assert_int_equal(chmod(real, 0700), 0);
+  assert_int_equal(symlink(real, venue), 0);
+  refuse_rig("is a link");
+  unlink(venue);
+  if (geteuid() != 0) {
+    print_message("note: another user's folder needs root to be made\n");
+    skip();
+  }
+  make_venue();
+  assert_int_equal(chown(venue, 65534, 65534), 0);
+  refuse_rig("belongs to user 65534");
+}
+
+static void what_a_killed_rig_left_is_replaced_and_the_folder_is_private(void **state) {
+  (void)state;
+  char command[160];
+  snprintf(command, sizeof command, "rm -rf '%s'", venue);
+  assert_int_equal(system(command), 0);
+  pid_t rig = start_rig("");
+  if (!rig) return;
+  struct stat info;
+  assert_int_equal(stat(venue, &info), 0);
+  assert_int_equal(info.st_mode & 0777, 0700);
+  kill(rig, SIGKILL);
+  vsss_wait(rig, 20);
+  rig = start_rig("--width 320 --height 240");
+  char path[128];
+  vs_calib calib;
+  snprintf(path, sizeof path, "%s/calib.ini", venue);
+  assert_ok(vs_calib_load(path, &calib, err));
+  assert_int_equal(calib.width, 320);
+  kill(rig, SIGINT);
+  assert_int_equal(vsss_wait(rig, 20), 0);
+  assert_int_equal(rmdir(venue), 0); // nothing of it is left
+}
+
 static void bad_input_is_named_in_one_line(void **state) {
   (void)state;
   assert_refused("rig --team green", 2, "--team green: expected blue or yellow");
@@ -168,6 +271,10 @@ int main(void) {
       cmocka_unit_test(a_folder_that_cannot_be_made_is_named),
       cmocka_unit_test(the_camera_shows_the_kick_off_where_the_calibration_says),
       cmocka_unit_test(the_robots_obey_the_radio_and_report),
+      cmocka_unit_test(files_that_no_rig_left_are_kept_and_named),
+      cmocka_unit_test(planted_links_are_refused_and_what_they_point_at_is_kept),
+      cmocka_unit_test(a_folder_that_is_not_only_the_users_is_refused),
+      cmocka_unit_test(what_a_killed_rig_left_is_replaced_and_the_folder_is_private),
       cmocka_unit_test(a_second_rig_in_the_same_folder_is_refused),
   };
   return cmocka_run_group_tests_name("cli/rig", tests, make_folder, remove_folder);
