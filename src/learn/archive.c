@@ -11,21 +11,22 @@
 
 static const char magic[8] = "VSSSCKP1";
 
-typedef struct section {
+typedef struct header {
   char name[VS_ARCHIVE_NAME];
+  uint32_t version; // 0 in files from before there were any
   uint64_t size;
-} section;
+} header;
 
 void vs_archive_begin(vs_bytes *archive) { vs_bytes_append(archive, magic, sizeof magic); }
 
-void vs_archive_section(vs_bytes *archive, const char *name, const void *data, size_t size) {
-  void *room = vs_archive_room(archive, name, size);
+void vs_archive_section(vs_bytes *archive, const vs_section *section, const void *data, size_t size) {
+  void *room = vs_archive_room(archive, section, size);
   if (room && size) memcpy(room, data, size);
 }
 
-void *vs_archive_room(vs_bytes *archive, const char *name, size_t size) {
-  section head = {.size = size};
-  snprintf(head.name, sizeof head.name, "%s", name);
+void *vs_archive_room(vs_bytes *archive, const vs_section *section, size_t size) {
+  header head = {.version = section->version, .size = size};
+  snprintf(head.name, sizeof head.name, "%s", section->name);
   vs_bytes_append(archive, &head, sizeof head);
   return vs_bytes_room(archive, size);
 }
@@ -62,7 +63,7 @@ static vs_status read_all(const char *path, vs_bytes *out, vs_error *err) {
 static vs_status check_sections(const vs_bytes *archive, const char *path, vs_error *err) {
   size_t at = sizeof magic, end = archive->size - sizeof(uint64_t);
   while (at < end) {
-    section head;
+    header head;
     if (end - at < sizeof head) return vs_fail(err, VS_FAIL, "%s: damaged", path);
     memcpy(&head, archive->data + at, sizeof head);
     at += sizeof head;
@@ -90,23 +91,35 @@ vs_status vs_archive_read(const char *path, vs_bytes *archive, vs_error *err) {
   return s;
 }
 
-vs_status vs_archive_find(const vs_bytes *archive, const char *path, const char *name, size_t size, const void **data,
-                          size_t *found_size, vs_error *err) {
+bool vs_archive_has(const vs_bytes *archive, const char *name, vs_found *out) {
   size_t at = sizeof magic, end = archive->size - sizeof(uint64_t);
   while (at < end) {
-    section head;
+    header head;
     memcpy(&head, archive->data + at, sizeof head);
     at += sizeof head;
     if (strncmp(head.name, name, sizeof head.name) == 0) {
-      if (size && head.size != size)
-        return vs_fail(err, VS_FAIL,
-                       "%s: '%s' has %llu bytes, expected %zu: made with other settings or another version", path, name,
-                       (unsigned long long)head.size, size);
-      *data = archive->data + at;
-      if (found_size) *found_size = head.size;
-      return VS_OK;
+      *out = (vs_found){archive->data + at, head.size, head.version ? head.version : 1};
+      return true;
     }
     at += head.size;
   }
-  return vs_fail(err, VS_FAIL, "%s: no '%s' in it: made by another version", path, name);
+  return false;
+}
+
+vs_status vs_archive_find(const vs_bytes *archive, const char *path, const vs_section *section, size_t size,
+                          vs_found *out, vs_error *err) {
+  if (!vs_archive_has(archive, section->name, out))
+    return vs_fail(err, VS_FAIL, "%s: no '%s' in it: made by another version", path, section->name);
+  if (out->version > section->version)
+    return vs_fail(err, VS_FAIL,
+                   "%s: '%s' is too new (version %u, this vsss reads up to %u): use the vsss that wrote it", path,
+                   section->name, out->version, section->version);
+  if (out->version < section->oldest)
+    return vs_fail(err, VS_FAIL,
+                   "%s: '%s' is too old (version %u, this vsss reads from %u on): use the vsss that wrote it", path,
+                   section->name, out->version, section->oldest);
+  if (size && out->size != size)
+    return vs_fail(err, VS_FAIL, "%s: '%s' has %zu bytes, expected %zu: made with other settings or another version",
+                   path, section->name, out->size, size);
+  return VS_OK;
 }

@@ -12,6 +12,17 @@
 #include "vsss/check.h"
 #include "vsss/contract.h"
 
+// What a checkpoint holds, and the versions of it (archive.h). The league's are in league_file.c. Adam's m and v are
+// called mean and square in the file, as they were in the first release.
+static const vs_section contract_section = {"contract", 1, 1};
+static const vs_section settings_section = {"settings", 1, 1};
+static const vs_section counters_section = {"counters", 1, 1};
+static const vs_section parameters_section = {"parameters", 1, 1};
+static const vs_section m_section = {"mean", 1, 1};
+static const vs_section v_section = {"square", 1, 1};
+static const vs_section observation_section = {"observation", 1, 1};
+static const vs_section matches_section = {"matches", VS_VECENV_STATE, VS_VECENV_STATE};
+
 // The numbers of a run that are no arrays.
 typedef struct counters {
   int64_t updates, transitions, adam_steps, decision;
@@ -30,16 +41,17 @@ static void save_learner(const vs_train *train, vs_bytes *out) {
   numbers.wall_s = train->wall_s;
   numbers.scale = train->scale;
   vs_archive_begin(out);
-  vs_archive_section(out, "contract", vs_contract_hash_hex(), 16);
-  vs_archive_section(out, "settings", settings, vs_train_def_text(&train->def, false, settings, sizeof settings));
-  vs_archive_section(out, "counters", &numbers, sizeof numbers);
-  vs_archive_section(out, "parameters", l->parameters, l->net.size * sizeof(float));
-  vs_archive_section(out, "mean", l->mean, l->net.size * sizeof(float));
-  vs_archive_section(out, "square", l->square, l->net.size * sizeof(float));
+  vs_archive_section(out, &contract_section, vs_contract_hash_hex(), 16);
+  vs_archive_section(out, &settings_section, settings,
+                     vs_train_def_text(&train->def, false, settings, sizeof settings));
+  vs_archive_section(out, &counters_section, &numbers, sizeof numbers);
+  vs_archive_section(out, &parameters_section, l->parameters, l->net.size * sizeof(float));
+  vs_archive_section(out, &m_section, l->mean, l->net.size * sizeof(float));
+  vs_archive_section(out, &v_section, l->square, l->net.size * sizeof(float));
 }
 
 static vs_status add_matches(const vs_train *train, vs_bytes *out, vs_error *err) {
-  vs_archive_section(out, "observation", train->rollout.io.observation,
+  vs_archive_section(out, &observation_section, train->rollout.io.observation,
                      (size_t)VS_VECENV_ROWS(train->def.envs) * VS_OBS_SIZE * sizeof(float));
   size_t size = train->matches.state_size(train->matches.self);
   if (size == 0) return vs_fail(err, VS_FAIL, "an opponent of this run cannot be saved");
@@ -48,7 +60,7 @@ static vs_status add_matches(const vs_train *train, vs_bytes *out, vs_error *err
   if (!state) return vs_fail(err, VS_FAIL, "out of memory for a checkpoint");
   memset(state, 0, size);
   train->matches.save(train->matches.self, state);
-  vs_archive_section(out, "matches", state, size);
+  vs_archive_section(out, &matches_section, state, size);
   free(state);
   return VS_OK;
 }
@@ -117,26 +129,26 @@ static vs_status read_either(const char *path, vs_bytes *archive, char *used, si
 }
 
 static vs_status check_contract(const vs_bytes *archive, const char *path, vs_error *err) {
-  const void *data;
-  vs_status s = vs_archive_find(archive, path, "contract", 16, &data, NULL, err);
-  if (s == VS_OK && memcmp(data, vs_contract_hash_hex(), 16) != 0)
+  vs_found found;
+  vs_status s = vs_archive_find(archive, path, &contract_section, 16, &found, err);
+  if (s == VS_OK && memcmp(found.data, vs_contract_hash_hex(), 16) != 0)
     return vs_fail(err, VS_FAIL, "%s: made for contract %.16s, this program's is %s: train anew", path,
-                   (const char *)data, vs_contract_hash_hex());
+                   (const char *)found.data, vs_contract_hash_hex());
   return s;
 }
 
 vs_status vs_train_read_def(const char *path, vs_train_def *out, vs_error *err) {
   vs_bytes archive;
   char used[PATH_MAX];
-  const void *data;
-  size_t size;
+  vs_found found;
   vs_status s = read_either(path, &archive, used, sizeof used, NULL, err);
   if (s != VS_OK) return s;
   s = check_contract(&archive, used, err);
-  if (s == VS_OK) s = vs_archive_find(&archive, used, "settings", 0, &data, &size, err);
+  if (s == VS_OK) s = vs_archive_find(&archive, used, &settings_section, 0, &found, err);
   if (s == VS_OK) {
     char text[VS_TRAIN_TEXT_MAX];
-    snprintf(text, sizeof text, "%.*s", (int)(size < sizeof text ? size : sizeof text - 1), (const char *)data);
+    int length = (int)(found.size < sizeof text ? found.size : sizeof text - 1);
+    snprintf(text, sizeof text, "%.*s", length, (const char *)found.data);
     vs_config_key keys[VS_TRAIN_KEYS_MAX];
     *out = vs_train_def_default();
     vs_train_def_before(out);
@@ -147,14 +159,14 @@ vs_status vs_train_read_def(const char *path, vs_train_def *out, vs_error *err) 
   return s;
 }
 
-static vs_status load_floats(const vs_bytes *archive, const char *path, const char *name, float *out, size_t count,
-                             vs_error *err) {
-  const void *data;
-  vs_status s = vs_archive_find(archive, path, name, count * sizeof *out, &data, NULL, err);
+static vs_status load_floats(const vs_bytes *archive, const char *path, const vs_section *section, float *out,
+                             size_t count, vs_error *err) {
+  vs_found found;
+  vs_status s = vs_archive_find(archive, path, section, count * sizeof *out, &found, err);
   if (s != VS_OK) return s;
-  memcpy(out, data, count * sizeof *out);
-  return vs_all_finite_floats(out, count) ? VS_OK
-                                          : vs_fail(err, VS_FAIL, "%s: '%s' holds what is no number", path, name);
+  memcpy(out, found.data, count * sizeof *out);
+  if (vs_all_finite_floats(out, count)) return VS_OK;
+  return vs_fail(err, VS_FAIL, "%s: '%s' holds what is no number", path, section->name);
 }
 
 // Numbers that a run has. on is a bool: it is what the settings say, not what the file does.
@@ -166,23 +178,23 @@ static bool counters_ok(const counters *c) {
 }
 
 static vs_status load_matches(vs_train *t, const vs_bytes *archive, const char *path, vs_error *err) {
-  const void *data;
+  vs_found found;
   // Matches are restored into ones that have started (their players are there from then on), from aligned memory.
   vs_status s = t->matches.reset(t->matches.self, &t->rollout.io, err);
   if (s != VS_OK) return s;
   size_t size = t->matches.state_size(t->matches.self);
-  s = vs_archive_find(archive, path, "matches", size, &data, NULL, err);
+  s = vs_archive_find(archive, path, &matches_section, size, &found, err);
   if (s != VS_OK) return s;
   void *state = aligned_alloc(64, (size + 63) / 64 * 64);
   if (!state) s = vs_fail(err, VS_FAIL, "%s: out of memory", path);
   if (s == VS_OK) {
-    memcpy(state, data, size);
+    memcpy(state, found.data, size);
     s = t->matches.restore(t->matches.self, state, err);
     if (s != VS_OK) vs_fail_prefix(err, "%s: 'matches'", path);
   }
   free(state);
   size_t observations = (size_t)VS_VECENV_ROWS(t->def.envs) * VS_OBS_SIZE;
-  if (s == VS_OK) s = load_floats(archive, path, "observation", t->rollout.io.observation, observations, err);
+  if (s == VS_OK) s = load_floats(archive, path, &observation_section, t->rollout.io.observation, observations, err);
   return s;
 }
 
@@ -201,29 +213,30 @@ static vs_status share_archive(const vs_group *g, vs_status status, vs_bytes *ar
 }
 
 static vs_status load(vs_train *t, const vs_bytes *archive, const char *path, vs_error *err) {
-  const void *data;
+  vs_found found;
   counters numbers;
   vs_learner *l = &t->learner;
   vs_status s = check_contract(archive, path, err);
-  if (s == VS_OK) s = vs_archive_find(archive, path, "counters", sizeof numbers, &data, NULL, err);
+  if (s == VS_OK) s = vs_archive_find(archive, path, &counters_section, sizeof numbers, &found, err);
   if (s != VS_OK) return s;
-  memcpy(&numbers, data, sizeof numbers);
+  memcpy(&numbers, found.data, sizeof numbers);
   if (!counters_ok(&numbers)) return vs_fail(err, VS_FAIL, "%s: 'counters' holds a number that no run has", path);
   numbers.scale.on = t->def.value_scale;
-  s = load_floats(archive, path, "parameters", l->parameters, l->net.size, err);
-  if (s == VS_OK) s = load_floats(archive, path, "mean", l->mean, l->net.size, err);
-  if (s == VS_OK) s = load_floats(archive, path, "square", l->square, l->net.size, err);
-  bool slim = vs_archive_find(archive, path, "league", 0, &data, NULL, NULL) != VS_OK;
+  s = load_floats(archive, path, &parameters_section, l->parameters, l->net.size, err);
+  if (s == VS_OK) s = load_floats(archive, path, &m_section, l->mean, l->net.size, err);
+  if (s == VS_OK) s = load_floats(archive, path, &v_section, l->square, l->net.size, err);
+  bool slim = !vs_archive_has(archive, "league", &found);
   if (s == VS_OK && !slim) s = vs_league_load(&t->league, archive, path, err);
   if (s == VS_OK && slim) vs_train_hand_over(t);
   // The file holds the matches of rank 0; other ranks start theirs anew, and their slots' episodes with them.
-  if (s == VS_OK && !slim && vs_group_rank(t->group) == 0) s = load_matches(t, archive, path, err);
+  bool matches = !slim && vs_group_rank(t->group) == 0;
+  if (s == VS_OK && matches) s = load_matches(t, archive, path, err);
   if (s != VS_OK) return s;
   t->updates = numbers.updates, t->transitions = numbers.transitions, t->wall_s = numbers.wall_s;
   t->scale = numbers.scale;
   l->steps = numbers.adam_steps;
   t->rollout.decision = numbers.decision;
-  t->started = !slim && vs_group_rank(t->group) == 0;
+  t->started = matches;
   return VS_OK;
 }
 

@@ -5,6 +5,9 @@
 
 #include "vsss/check.h"
 
+static const vs_section league_section = {"league", 1, 1}, slots_section = {"slots", 1, 1},
+                        selves_section = {"selves", 1, 1};
+
 typedef struct league_state {
   int32_t selves, frozen, next_id, replacements, window_at, window_filled;
   double window[VS_LEAGUE_WINDOW];
@@ -23,10 +26,10 @@ void vs_league_save(const vs_league *l, vs_bytes *out) {
   state.replacements = l->replacements, state.window_at = l->window_at, state.window_filled = l->window_filled;
   memcpy(state.window, l->window, sizeof state.window);
   memcpy(state.record, l->record, sizeof state.record);
-  vs_archive_section(out, "league", &state, sizeof state);
-  vs_archive_section(out, "slots", l->slot, (size_t)l->slots * sizeof *l->slot);
+  vs_archive_section(out, &league_section, &state, sizeof state);
+  vs_archive_section(out, &slots_section, l->slot, (size_t)l->slots * sizeof *l->slot);
   size_t each = sizeof(self_state) + l->size * sizeof(float);
-  uint8_t *at = vs_archive_room(out, "selves", (size_t)l->selves * each);
+  uint8_t *at = vs_archive_room(out, &selves_section, (size_t)l->selves * each);
   for (int i = 0; at && i < l->selves; i++, at += each) {
     self_state self;
     memset(&self, 0, sizeof self);
@@ -119,23 +122,22 @@ static vs_status take_selves(vs_league *l, const uint8_t *at, int count, vs_erro
 }
 
 vs_status vs_league_load(vs_league *l, const vs_bytes *archive, const char *path, vs_error *err) {
-  const void *data, *slots, *selves;
+  vs_found found, slots, selves;
   league_state state;
-  vs_status s = vs_archive_find(archive, path, "league", sizeof state, &data, NULL, err);
+  vs_status s = vs_archive_find(archive, path, &league_section, sizeof state, &found, err);
   if (s != VS_OK) return s;
-  memcpy(&state, data, sizeof state);
+  memcpy(&state, found.data, sizeof state);
   if (!state_ok(l, &state)) return vs_fail(err, VS_FAIL, "%s: 'league' holds a number that no run has", path);
-  size_t slots_size = (size_t)l->slots * sizeof *l->slot, each = sizeof(self_state) + l->size * sizeof(float),
-         found = 0;
-  s = vs_archive_find(archive, path, "slots", slots_size, &slots, NULL, err);
-  if (s == VS_OK) s = vs_archive_find(archive, path, "selves", (size_t)state.selves * each, &selves, &found, err);
+  size_t slots_size = (size_t)l->slots * sizeof *l->slot, each = sizeof(self_state) + l->size * sizeof(float);
+  s = vs_archive_find(archive, path, &slots_section, slots_size, &slots, err);
+  if (s == VS_OK) s = vs_archive_find(archive, path, &selves_section, (size_t)state.selves * each, &selves, err);
   if (s != VS_OK) return s;
   vs_league_slot *slot = malloc(slots_size); // aligned, which the file's bytes need not be
   if (!slot) return vs_fail(err, VS_FAIL, "%s: out of memory", path);
-  memcpy(slot, slots, slots_size);
-  if (found != (size_t)state.selves * each || !members_ok(l, &state, slot, selves, each))
+  memcpy(slot, slots.data, slots_size);
+  if (selves.size != (size_t)state.selves * each || !members_ok(l, &state, slot, selves.data, each))
     s = vs_fail(err, VS_FAIL, "%s: 'slots' or 'selves' hold a number that no run has", path);
-  else if (take_selves(l, selves, state.selves, err) != VS_OK)
+  else if (take_selves(l, selves.data, state.selves, err) != VS_OK)
     s = vs_fail_prefix(err, "%s", path);
   if (s == VS_OK) {
     memcpy(l->slot, slot, slots_size);

@@ -13,6 +13,12 @@
 
 static char folder[64], file[96], previous[112];
 
+// As of any name at its first version.
+static void add_section(vs_bytes *archive, const char *name, const void *data, size_t size) {
+  const vs_section section = {name, 1, 1};
+  vs_archive_section(archive, &section, data, size);
+}
+
 static vs_train_def tiny_def(void) {
   vs_train_def def = vs_train_def_default();
   snprintf(def.precision, sizeof def.precision, "fp32"); // auto may choose another one each time
@@ -136,12 +142,121 @@ static void a_run_older_than_the_precision_goes_on_in_fp32(void **state) {
   vs_bytes archive = {0};
   vs_train_def def;
   vs_archive_begin(&archive);
-  vs_archive_section(&archive, "contract", vs_contract_hash_hex(), 16);
-  vs_archive_section(&archive, "settings", settings, sizeof settings - 1);
+  add_section(&archive, "contract", vs_contract_hash_hex(), 16);
+  add_section(&archive, "settings", settings, sizeof settings - 1);
   assert_ok(vs_archive_write(&archive, file, err));
   assert_ok(vs_train_read_def(file, &def, err));
   assert_near(def.gamma, 0.9, 0.0);
   assert_string_equal(def.precision, "fp32");
+}
+
+static void a_section_of_another_version_is_refused_by_name(void **state) {
+  (void)state;
+  static const vs_section written = {"thing", 3, 4};
+  vs_bytes archive = {0};
+  vs_found found;
+  vs_archive_begin(&archive);
+  vs_archive_section(&archive, &written, "abc", 3);
+  assert_ok(vs_archive_write(&archive, file, err));
+  assert_ok(vs_archive_read(file, &archive, err));
+  static const struct {
+    vs_section reader;
+    const char *says; // NULL: it reads it
+  } row[] = {{{"thing", 3, 4}, NULL},
+             {{"thing", 1, 7}, NULL},
+             {{"thing", 1, 3}, "'thing' is too new (version 4, this vsss reads up to 3)"},
+             {{"thing", 5, 5}, "'thing' is too old (version 4, this vsss reads from 5 on)"},
+             {{"thin", 1, 4}, "no 'thin' in it"}};
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+    vs_error err = {0};
+    vs_status s = vs_archive_find(&archive, file, &row[i].reader, 3, &found, &err);
+    assert_int_equal(s, row[i].says ? VS_FAIL : VS_OK);
+    if (row[i].says) assert_non_null(strstr(err.text, row[i].says));
+    if (row[i].says) assert_non_null(strstr(err.text, file));
+    if (!row[i].says) assert_int_equal(found.version, 4);
+  }
+  vs_bytes_free(&archive);
+}
+
+// Where the version of the section that begins at data is: after the name, before the size.
+static void *version_of(vs_bytes *archive, const char *name) {
+  vs_found found;
+  assert_true(vs_archive_has(archive, name, &found));
+  return archive->data + ((const uint8_t *)found.data - archive->data) - 12;
+}
+
+static void write_again(vs_bytes *archive) {
+  archive->size -= sizeof(uint64_t); // the hash
+  assert_ok(vs_archive_write(archive, file, err));
+}
+
+static void a_checkpoint_of_before_versions_continues_bit_for_bit(void **state) {
+  (void)state;
+  static const char *const names[] = {"contract", "settings", "counters", "parameters",  "mean",   "square",
+                                      "league",   "slots",    "selves",   "observation", "matches"};
+  vs_train_def def = tiny_def(), read;
+  vs_train *straight = open_tiny(&def), *again;
+  updates(straight, 3);
+  assert_ok(vs_train_save(straight, file, err));
+  vs_bytes archive;
+  assert_ok(vs_archive_read(file, &archive, err));
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) memset(version_of(&archive, names[i]), 0, 4);
+  write_again(&archive);
+  assert_ok(vs_train_read_def(file, &read, err));
+  again = open_tiny(&read);
+  assert_ok(vs_train_load(again, file, NULL, err));
+  updates(straight, 2);
+  updates(again, 2);
+  assert_same(straight, again);
+  vs_train_free(straight);
+  vs_train_free(again);
+}
+
+static void a_newer_checkpoint_is_refused_by_the_section_that_is(void **state) {
+  (void)state;
+  static const char *const names[] = {"parameters", "square", "league", "matches"};
+  vs_train_def def = tiny_def();
+  vs_train *train = open_tiny(&def);
+  updates(train, 1);
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    unlink(previous);
+    assert_ok(vs_train_save(train, file, err));
+    vs_bytes archive;
+    assert_ok(vs_archive_read(file, &archive, err));
+    static const uint32_t newer = 1000;
+    memcpy(version_of(&archive, names[i]), &newer, sizeof newer);
+    write_again(&archive);
+    vs_train *again = open_tiny(&def);
+    vs_error err = {0};
+    char expected[64];
+    snprintf(expected, sizeof expected, "'%s' is too new (version 1000", names[i]);
+    assert_int_equal(vs_train_load(again, file, NULL, &err), VS_FAIL);
+    assert_non_null(strstr(err.text, expected));
+    vs_train_free(again);
+  }
+  vs_train_free(train);
+}
+
+// The one in the tree: written by the release that ships it.
+static void the_last_releases_checkpoint_loads_and_trains_on(void **state) {
+  (void)state;
+  static const char released[] = "models/policy/vsss.checkpoint";
+  vs_train_def def;
+  assert_ok(vs_train_read_def(released, &def, err));
+  assert_string_equal(def.hidden, "256,256");
+  snprintf(def.precision, sizeof def.precision, "fp32"); // bf16 needs a processor that has it
+  def.envs = 8, def.steps = 4, def.minibatch = 64, def.threads = 1;
+  vs_train *train = open_tiny(&def);
+  assert_ok(vs_train_load(train, released, NULL, err));
+  assert_true(train->transitions > 10 * 1000 * 1000);
+  assert_true(train->learner.steps > 10000); // of Adam: its m and v are those of a long run
+  double largest = 0.0;
+  for (size_t i = 0; i < train->learner.net.size; i++) largest = fmax(largest, train->learner.square[i]);
+  assert_true(largest > 0.0);
+  long long before = train->transitions;
+  updates(train, 1);
+  assert_true(train->transitions > before);
+  vs_train_free(train);
 }
 
 static void a_slim_checkpoint_continues_the_networks_with_new_matches(void **state) {
@@ -177,7 +292,7 @@ static void a_full_disk_leaves_the_old_checkpoint_and_names_the_file(void **stat
   assert_non_null(strstr(err.text, "/dev/full/checkpoint"));
   vs_bytes bytes = {0};
   vs_archive_begin(&bytes);
-  vs_archive_section(&bytes, "x", "abc", 3);
+  add_section(&bytes, "x", "abc", 3);
   assert_ok(vs_archive_write(&bytes, file, err));
   // A limit on the size of files stands for the full disk: the write fails half-way.
   struct rlimit old, small;
@@ -258,6 +373,10 @@ int main(void) {
       cmocka_unit_test(a_damaged_checkpoint_falls_back_to_the_one_before_and_says_so),
       cmocka_unit_test(a_checkpoint_of_other_settings_is_refused),
       cmocka_unit_test(a_run_older_than_the_precision_goes_on_in_fp32),
+      cmocka_unit_test(a_section_of_another_version_is_refused_by_name),
+      cmocka_unit_test(a_checkpoint_of_before_versions_continues_bit_for_bit),
+      cmocka_unit_test(a_newer_checkpoint_is_refused_by_the_section_that_is),
+      cmocka_unit_test(the_last_releases_checkpoint_loads_and_trains_on),
       cmocka_unit_test(a_slim_checkpoint_continues_the_networks_with_new_matches),
       cmocka_unit_test(a_full_disk_leaves_the_old_checkpoint_and_names_the_file),
       cmocka_unit_test(a_run_killed_at_any_moment_resumes_exactly),
