@@ -6,6 +6,8 @@ void vs_firmware_init(vs_firmware *firmware, uint8_t id, uint32_t now_ms) {
   *firmware = stopped;
 }
 
+void vs_firmware_set_key(vs_firmware *firmware, const vs_radio_key *key) { firmware->decoder.key = *key; }
+
 static int16_t limit(int16_t counts) {
   if (counts > VS_FIRMWARE_LIMIT) return VS_FIRMWARE_LIMIT;
   if (counts < -VS_FIRMWARE_LIMIT) return -VS_FIRMWARE_LIMIT;
@@ -28,11 +30,14 @@ static void take(vs_firmware *firmware, const vs_radio_command *command, uint32_
   bool stop = command->flags & VS_RADIO_FLAG_STOP;
   if (!target && !stop) return;
   check_watchdog(firmware, now_ms);
-  if (firmware->running && !vs_radio_seq_newer(command->seq, firmware->last_seq)) {
+  bool again = firmware->decoder.key.set ? command->counter <= firmware->counter
+                                         : firmware->running && !vs_radio_seq_newer(command->seq, firmware->last_seq);
+  if (again) {
     firmware->rx_bad++;
     return;
   }
   firmware->running = true;
+  firmware->counter = command->counter;
   firmware->last_seq = command->seq;
   firmware->last_ms = now_ms;
   firmware->stopped = stop;
@@ -72,5 +77,5 @@ size_t vs_firmware_telemetry(const vs_firmware *firmware, uint32_t now_ms, int16
   frame.as.telemetry.rx_ok = firmware->rx_ok;
   frame.as.telemetry.rx_bad = firmware->rx_bad;
   frame.as.telemetry.uptime_ms = now_ms - firmware->start_ms;
-  return vs_radio_encode(&frame, out);
+  return vs_radio_encode_keyed(&frame, &firmware->decoder.key, out);
 }

@@ -163,6 +163,11 @@ vs_status vs_bus_publish(vs_bus *bus, vs_message *message, vs_error *err);
 typedef void (*vs_bus_handler)(const vs_message *message, void *user);
 vs_status vs_bus_subscribe(vs_bus *bus, vs_channel channel, bool newest_only, vs_bus_handler handler, void *user,
                            vs_error *err);
+// The same, but only for messages that this machine sent: for what moves robots. LCM listens to the whole network, and
+// with a time to live of 1 or more anybody on it is heard.
+vs_status vs_bus_subscribe_near(vs_bus *bus, vs_channel channel, vs_bus_handler handler, void *user, vs_error *err);
+int64_t vs_bus_far(const vs_bus *bus); // messages on our channels from other machines, refused for that
+
 // Waits up to timeout_ms (0: not at all) for one message and hands it on, then all that already wait. One thread only.
 // handled (may be NULL): how many.
 vs_status vs_bus_handle(vs_bus *bus, int timeout_ms, int *handled, vs_error *err);

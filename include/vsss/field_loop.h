@@ -36,6 +36,7 @@ typedef struct vs_field_def {
   double duration_s;    // of the match, for the policy's clock; a referee on LCM says otherwise
   int baud;
   uint8_t radio_id[VS_TEAM_SIZE]; // number on the air of robot i
+  vs_radio_key key;               // of our team on the air
   double camera_height_m;
   double ball_hold_s; // a ball never seen, or not for longer, stops the robots; 0: they play on with its last place
   vs_camera_def camera_def;
@@ -45,6 +46,7 @@ typedef struct vs_field_def {
   bool referee_goes;   // a referee on LCM releases the robots with each restart and stops them at half time
   bool lcm;            // publish, and listen to a referee
   double image_hz;     // pictures a second on VSSS_IMAGE, 0.1..5; 0: none
+  bool lcm_remote;     // hear a referee on another machine too
   const char *lcm_url; // NULL: the default one, without which we play on; given: failing to open it is an error
 } vs_field_def;
 vs_field_def vs_field_def_default(void);

@@ -26,7 +26,7 @@ typedef struct vs_radio_robot_state {
 // One team's link. Plain data; times are of the monotonic clock.
 typedef struct vs_radio_link {
   uint8_t id[VS_TEAM_SIZE]; // number on the air of robot i
-  uint8_t seq;              // of the next frame
+  uint64_t counter;         // of the next frame; its low byte is the seq
   bool have_command, stop;
   vs_wheels wheels[VS_TEAM_SIZE];
   int64_t command_us;     // when the command was decided
@@ -42,6 +42,10 @@ typedef struct vs_radio_link {
 // VS_USAGE: two robots with one id.
 vs_status vs_radio_link_init(vs_radio_link *link, const uint8_t id[VS_TEAM_SIZE], vs_error *err);
 
+// From here on all frames are the key's. wall_us: since the epoch; the counter starts at it, 65536 a second, which no
+// sender reaches, so that one that starts anew counts on above the last one's frames.
+void vs_radio_link_set_key(vs_radio_link *link, const vs_radio_key *key, int64_t wall_us);
+
 // A new command; decided_us: the moment of the frame it was decided on. stop: brake. A wheel that is not finite is a stop.
 void vs_radio_link_command(vs_radio_link *link, const vs_wheels wheels[VS_TEAM_SIZE], bool stop, int64_t decided_us);
 
@@ -50,7 +54,7 @@ size_t vs_radio_link_due(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RAD
 // One STOP frame, due or not.
 size_t vs_radio_link_stop(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RADIO_FRAME_MAX]);
 
-// The same without touching the link, for a program that dies: seq is `ahead` of the next frame's.
+// The same without touching the link, for a program that dies: its number is `ahead` of the next frame's.
 size_t vs_radio_link_last_stop(const vs_radio_link *link, uint8_t ahead, uint8_t out[VS_RADIO_FRAME_MAX]);
 
 void vs_radio_link_receive(vs_radio_link *link, const uint8_t *bytes, size_t size, int64_t now_us);

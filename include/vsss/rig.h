@@ -6,6 +6,7 @@
 
 #include "vsss/frame_stream.h"
 #include "vsss/mark.h"
+#include "vsss/radio_codec.h"
 #include "vsss/referee.h"
 #include "vsss/sim.h"
 #include "vsss/world.h"
@@ -34,6 +35,7 @@ typedef struct vs_rig_def {
   vs_mark own, their;       // what the teams wear: VS_MARK_APRIL, VS_MARK_PATCH
   int tag_id[VS_TEAM_SIZE]; // AprilTags of the own team; ArUco marks are the league's
   uint8_t radio_id[VS_TEAM_SIZE];
+  vs_radio_key key;    // that the own robots have
   const char *folder;  // where camera, radio and calib.ini are put; made if it is missing
   bool lcm;            // VSSS_TRUTH and VSSS_REFEREE
   const char *lcm_url; // NULL: the default one, without which the rig goes on; given: failing to open it is an error

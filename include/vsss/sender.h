@@ -15,8 +15,13 @@ extern "C" {
 
 typedef struct vs_sender vs_sender;
 
-// device NULL: a dry run, frames are made and go nowhere.
-vs_status vs_sender_new(const char *device, int baud, const uint8_t id[VS_TEAM_SIZE], vs_sender **out, vs_error *err);
+typedef struct vs_sender_def {
+  const char *device; // NULL: a dry run, frames are made and go nowhere
+  int baud;
+  uint8_t id[VS_TEAM_SIZE]; // number on the air of robot i
+  vs_radio_key key;
+} vs_sender_def;
+vs_status vs_sender_new(const vs_sender_def *def, vs_sender **out, vs_error *err);
 // Sends VS_RADIO_STOP_FRAMES stops and waits until they have left. NULL is allowed.
 void vs_sender_free(vs_sender *sender);
 

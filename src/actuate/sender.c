@@ -107,12 +107,13 @@ static void *repeat(void *sender) {
   }
 }
 
-vs_status vs_sender_new(const char *device, int baud, const uint8_t id[VS_TEAM_SIZE], vs_sender **out, vs_error *err) {
+vs_status vs_sender_new(const vs_sender_def *def, vs_sender **out, vs_error *err) {
   *out = NULL;
   vs_sender *s = calloc(1, sizeof *s);
   if (!s) return vs_fail(err, VS_FAIL, "out of memory");
-  vs_status status = vs_radio_link_init(&s->link, id, err);
-  if (status == VS_OK && device) status = vs_serial_open(device, baud, &s->serial, err);
+  vs_status status = vs_radio_link_init(&s->link, def->id, err);
+  if (status == VS_OK && def->key.set) vs_radio_link_set_key(&s->link, &def->key, vs_clock_wall_us());
+  if (status == VS_OK && def->device) status = vs_serial_open(def->device, def->baud, &s->serial, err);
   pthread_mutex_init(&s->lock, NULL);
   if (status == VS_OK && pthread_create(&s->thread, NULL, repeat, s))
     status = vs_fail(err, VS_FAIL, "no thread for the radio");

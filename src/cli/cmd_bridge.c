@@ -5,6 +5,7 @@
 
 #include "cli.h"
 #include "commands.h"
+#include "field_config.h"
 #include "operator.h"
 #include "vsss/bus.h"
 #include "vsss/clock.h"
@@ -131,12 +132,14 @@ static vs_status parse_ids(const char *text, uint8_t id[VS_TEAM_SIZE], vs_error 
   return VS_OK;
 }
 
-static vs_status run(bridge *b, int baud, const uint8_t id[VS_TEAM_SIZE], const char *url, vs_error *err) {
+static vs_status run(bridge *b, const vs_sender_def *radio, const char *url, bool remote, vs_error *err) {
   vs_operator operator_;
   vs_safety_init(&b->safety, vs_clock_monotonic_us());
-  vs_status s = vs_sender_new(b->device, baud, id, &b->sender, err);
+  vs_status s = vs_sender_new(radio, &b->sender, err);
   if (s == VS_OK) s = vs_bus_open(url, &b->bus, err);
-  if (s == VS_OK) s = vs_bus_subscribe(b->bus, VS_CH_CMD, false, on_command, b, err);
+  if (s == VS_OK)
+    s = remote ? vs_bus_subscribe(b->bus, VS_CH_CMD, false, on_command, b, err)
+               : vs_bus_subscribe_near(b->bus, VS_CH_CMD, on_command, b, err);
   if (s == VS_OK) s = vs_operator_open(NULL, &operator_, err);
   if (s == VS_OK) {
     printf("bridge: %s commands from %s to %s; Ctrl-C stops the robots and ends\n", vs_team_name(b->team),
@@ -156,19 +159,26 @@ static vs_status run(bridge *b, int baud, const uint8_t id[VS_TEAM_SIZE], const 
     printf("%lld commands, %lld frames sent, %lld dropped, %u telemetry frames, %u bad, device reopened %lld times\n",
            (long long)b->commands, (long long)b->serial.sent, (long long)b->serial.dropped, b->link.decoder.ok,
            b->link.decoder.bad, (long long)b->serial.reopened);
+  if (began && vs_bus_far(b->bus))
+    printf("%lld messages of other machines were not obeyed; --lcm-remote hears them\n", (long long)vs_bus_far(b->bus));
   vs_bus_close(b->bus);
   return s;
 }
 
 int cmd_bridge(int argc, char **argv) {
-  const char *device = NULL, *url = NULL, *team = "blue", *ids = "0,1,2";
-  int baud = VS_SERIAL_BAUD;
+  const char *device = NULL, *url = NULL, *team = "blue", *ids = NULL, *path = NULL;
+  int baud = 0;
+  bool remote = false;
+  static vs_field_config config;
   bridge b = {.team = VS_BLUE};
   const vs_flag flags[] = {
       {"radio", VS_FLAG_TEXT, &device, "DEV", "serial device, such as /dev/ttyUSB0", 0, 0},
-      {"baud", VS_FLAG_INT, &baud, "N", "its speed", 0, 0},
+      {"baud", VS_FLAG_INT, &baud, "N", "its speed; default: the configuration's", 0, 0},
       {"team", VS_FLAG_TEXT, &team, "TEAM", "whose commands: blue or yellow", 0, 0},
-      {"ids", VS_FLAG_TEXT, &ids, "A,B,C", "the robots' numbers on the air", 0, 0},
+      {"ids", VS_FLAG_TEXT, &ids, "A,B,C", "the robots' numbers on the air; default: the configuration's", 0, 0},
+      {"config", VS_FLAG_TEXT, &path, "FILE", "its [radio] has numbers and key; default: deploy/config/field.ini", 0,
+       0},
+      {"lcm-remote", VS_FLAG_SWITCH, &remote, NULL, "obey commands that another machine sends, too", 0, 0},
       {"go", VS_FLAG_SWITCH, &b.go, NULL, "the robots may move at once, and after a fault by themselves", 0, 0},
       {"lcm", VS_FLAG_TEXT, &url, "URL", "the bus (LCM_DEFAULT_URL, else " VS_BUS_DEFAULT_URL ")", 0, 0},
       {NULL, VS_FLAG_SWITCH, NULL, NULL, NULL, 0, 0}};
@@ -180,14 +190,16 @@ int cmd_bridge(int argc, char **argv) {
                     "until they are told to go (keys: " VS_OPERATOR_KEYS ").",
                     flags, NULL, &help, &err);
   if (s == VS_OK && help) return 0;
-  uint8_t id[VS_TEAM_SIZE] = {0};
   if (s == VS_OK && !device) s = vs_fail(&err, VS_USAGE, "--radio is needed, such as --radio /dev/ttyUSB0");
   if (s == VS_OK && strcmp(team, "blue") != 0 && strcmp(team, "yellow") != 0)
     s = vs_fail(&err, VS_USAGE, "--team %s: allowed are blue and yellow", team);
-  if (s == VS_OK) s = parse_ids(ids, id, &err);
+  if (s == VS_OK) s = vs_field_config_load(path, &config, &err);
+  vs_sender_def radio = {.device = device, .baud = baud ? baud : config.def.baud, .key = config.def.key};
+  memcpy(radio.id, config.def.radio_id, sizeof radio.id);
+  if (s == VS_OK && ids) s = parse_ids(ids, radio.id, &err);
   b.team = strcmp(team, "yellow") ? VS_BLUE : VS_YELLOW;
   b.device = device;
   b.armed = b.go;
-  if (s == VS_OK) s = run(&b, baud, id, url, &err);
+  if (s == VS_OK) s = run(&b, &radio, url, remote, &err);
   return s == VS_OK ? 0 : vs_cli_error("bridge", &err);
 }

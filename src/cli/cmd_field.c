@@ -21,7 +21,7 @@ typedef struct options {
   double seconds;
   uint64_t seed;
   int rt;
-  bool no_lcm, go, help;
+  bool no_lcm, lcm_remote, go, help;
 } options;
 
 static const char about[] =
@@ -55,6 +55,7 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
       {"record", VS_FLAG_TEXT, &o->record, "FILE", "write every frame's tracked world as CSV; valid: seen in it", 0, 0},
       {"rt", VS_FLAG_INT, &o->rt, "PRIO", "real-time priority, such as 50, and locked memory; 0: none", 0, 99},
       {"lcm", VS_FLAG_TEXT, &o->lcm, "URL", "of the messages", 0, 0},
+      {"lcm-remote", VS_FLAG_SWITCH, &o->lcm_remote, NULL, "obey a referee on another machine too", 0, 0},
       {"no-lcm", VS_FLAG_SWITCH, &o->no_lcm, NULL, "publish nothing, hear no referee", 0, 0},
       {NULL, VS_FLAG_SWITCH, NULL, NULL, NULL, 0, 0},
   };
@@ -94,6 +95,7 @@ static vs_status fill(const options *o, vs_field_config *config, vs_error *err) 
   def->seed = o->seed;
   def->lcm = !o->no_lcm;
   def->lcm_url = o->lcm;
+  def->lcm_remote = o->lcm_remote;
   return VS_OK;
 }
 
@@ -120,7 +122,8 @@ static void print_setup(const vs_field *field, const vs_field_def *def, const ch
          def->tracker.attack_plus_x ? "+x" : "-x", def->fallback ? "; when it fails " : "",
          def->fallback ? def->fallback : "");
   if (def->radio)
-    printf("radio   %s, %d baud\n", def->radio, def->baud);
+    printf("radio   %s, %d baud, %s\n", def->radio, def->baud,
+           def->key.set ? "with our team's key" : "no key: the robots obey anybody on the channel (radio.key)");
   else
     printf("radio   none: a dry run, no robot is driven (--radio DEVICE)\n");
   if (camera->exposure_ms > 5.0) printf("warning: exposed longer than 5 ms tags blur and robots in motion are lost\n");

@@ -4,11 +4,12 @@
 
 #include "cli.h"
 #include "commands.h"
+#include "field_config.h"
 #include "vsss/rig.h"
 #include "world_csv.h"
 
 typedef struct options {
-  const char *opponent, *team, *folder, *rules, *drive, *truth, *lcm, *own_tags, *their_tags;
+  const char *opponent, *team, *folder, *rules, *drive, *truth, *lcm, *own_tags, *their_tags, *config;
   vs_rig_optics optics;
   bool white_walls;
   double seconds;
@@ -53,6 +54,7 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
       {"uneven-light", VS_FLAG_REAL, &o->optics.uneven, "SHARE", "of the light that the darkest corner lacks", 0, 0.95},
       {"blur", VS_FLAG_REAL, &o->optics.blur_px, "PX", "deviation of the lens's blur", 0, 3},
       {"dir", VS_FLAG_TEXT, &o->folder, "DIR", "where camera, radio and calib.ini are put", 0, 0},
+      {"config", VS_FLAG_TEXT, &o->config, "FILE", "a field.ini: its [radio] tells the robots' numbers and key", 0, 0},
       {"truth", VS_FLAG_TEXT, &o->truth, "FILE", "write the true world of every picture as CSV", 0, 0},
       {"rt", VS_FLAG_INT, &o->rt, "PRIO", "real-time priority, such as 40, and locked memory; 0: none", 0, 99},
       {"lcm", VS_FLAG_TEXT, &o->lcm, "URL", "of VSSS_TRUTH and VSSS_REFEREE", 0, 0},
@@ -61,6 +63,15 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
   };
   return vs_args_parse(argc, argv, "rig [--opponent URI] [--team blue|yellow] [--seconds S] [--matches N]", about,
                        flags, NULL, &o->help, err);
+}
+
+static vs_status take_radio(const char *path, vs_rig_def *def, vs_error *err) {
+  static vs_field_config config;
+  vs_status s = vs_field_config_load(path, &config, err);
+  if (s != VS_OK) return s;
+  memcpy(def->radio_id, config.def.radio_id, sizeof def->radio_id);
+  def->key = config.def.key;
+  return VS_OK;
 }
 
 static vs_status fill(const options *o, const char *folder, vs_rig_def *def, vs_error *err) {
@@ -77,6 +88,7 @@ static vs_status fill(const options *o, const char *folder, vs_rig_def *def, vs_
   vs_status s = vs_cli_team("--team", o->team, &def->team, err);
   if (s == VS_OK) s = vs_mark_parse("--own-tags", o->own_tags, false, &def->own, err);
   if (s == VS_OK) s = vs_mark_parse("--their-tags", o->their_tags, true, &def->their, err);
+  if (s == VS_OK && o->config) s = take_radio(o->config, def, err);
   if (s == VS_OK) s = vs_rules_parse(o->rules, &rules, err);
   if (s != VS_OK) return s;
   def->referee = vs_referee_def_default(rules);
@@ -84,7 +96,7 @@ static vs_status fill(const options *o, const char *folder, vs_rig_def *def, vs_
   return VS_OK;
 }
 
-static void print_paths(const vs_rig *rig, const vs_rig_def *def, const char *note) {
+static void print_paths(const vs_rig *rig, const vs_rig_def *def, const char *config, const char *note) {
   printf("camera  rig:%s  %dx%d, 30 pictures a second\n", vs_rig_camera_path(rig), def->width_px, def->height_px);
   printf("radio   %s\n", vs_rig_radio_path(rig));
   printf("calib   %s\n", vs_rig_calib_path(rig));
@@ -92,6 +104,7 @@ static void print_paths(const vs_rig *rig, const vs_rig_def *def, const char *no
          vs_rig_camera_path(rig), vs_rig_radio_path(rig), vs_rig_calib_path(rig));
   if (def->own != VS_MARK_APRIL) printf(" --own-tags %s", vs_mark_name(def->own));
   if (def->their != VS_MARK_PATCH) printf(" --their-tags %s", vs_mark_name(def->their));
+  if (config) printf(" --config %s", config);
   printf("\n");
   printf("%swaiting for the camera to be opened\n", note);
   fflush(stdout);
@@ -173,7 +186,7 @@ int cmd_rig(int argc, char **argv) {
   if (s == VS_OK) s = vs_rig_new(&def, &rig, note, sizeof note, &err);
   if (s == VS_OK) {
     vs_cli_catch_interrupts();
-    print_paths(rig, &def, note);
+    print_paths(rig, &def, o.config, note);
     s = run(&o, rig, &err);
     print_summary(rig);
   }

@@ -7,7 +7,7 @@
 #include "vsss/paths.h"
 #include "vsss/vision_config.h"
 
-enum { ROWS = 120, OWN_ROWS = 13 };
+enum { ROWS = 120, OWN_ROWS = 15 };
 
 static vs_status load(const char *path, vs_field_config *c, vs_error *err) {
   vs_field_def *d = &c->def;
@@ -24,6 +24,9 @@ static vs_status load(const char *path, vs_field_config *c, vs_error *err) {
       {"radio.robot0_id", VS_CONFIG_INT, &c->radio_id[0], 0, 0, 255, "number on the air of robot 0"},
       {"radio.robot1_id", VS_CONFIG_INT, &c->radio_id[1], 0, 0, 255, "of robot 1"},
       {"radio.robot2_id", VS_CONFIG_INT, &c->radio_id[2], 0, 0, 255, "of robot 2"},
+      {"radio.team_id", VS_CONFIG_INT, &c->team_id, 0, 0, 255, "the team's number on the air, with a key"},
+      {"radio.key", VS_CONFIG_TEXT, c->key, sizeof c->key, 0, 0,
+       "32 hexadecimal digits; empty: frames without a check"},
       {"lcm.image_hz", VS_CONFIG_REAL, &d->image_hz, 0, 0, 5, "pictures a second on VSSS_IMAGE; 0: none"},
   };
   int n = vs_vision_schema(&d->detector, &d->tracker, &d->camera_def, &c->vision, rows + OWN_ROWS, ROWS - OWN_ROWS - 1);
@@ -51,6 +54,11 @@ vs_status vs_field_config_load(const char *path, vs_field_config *c, vs_error *e
   if (*c->fallback) d->fallback = c->fallback;
   if (*c->radio) d->radio = c->radio;
   for (int i = 0; i < VS_TEAM_SIZE; i++) d->radio_id[i] = (uint8_t)c->radio_id[i];
+  if (*c->key && !vs_radio_key_parse(c->team_id, c->key, &d->key))
+    return vs_fail(err, VS_USAGE,
+                   "%s: radio.key has %zu characters; expected 32 hexadecimal digits, such as those of "
+                   "'openssl rand -hex 16'",
+                   path, strlen(c->key));
   if (*c->team && vs_cli_team("field.team =", c->team, &d->team, err) != VS_OK) return vs_fail_prefix(err, "%s", path);
   return VS_OK;
 }

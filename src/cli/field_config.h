@@ -9,7 +9,8 @@ typedef struct vs_field_config {
   vs_field_def def; // its texts point into this struct
   char policy[256], fallback[256], radio[256], team[16], attack[8];
   vs_vision_words vision;
-  int radio_id[VS_TEAM_SIZE];
+  int radio_id[VS_TEAM_SIZE], team_id;
+  char key[64];
 } vs_field_config;
 
 // path NULL: deploy/config/field.ini of this program. attack stays "" where the file does not say.

@@ -16,6 +16,7 @@ typedef struct remote {
   vs_bus *bus;
   vs_team team;
   int timeout_ms;
+  int far; // answers of another machine count too
   uint32_t seq;
   bool answered;
   vs_wheels answer[VS_TEAM_SIZE];
@@ -47,9 +48,13 @@ static vs_status parse(const char *text, remote *r, const char **url, vs_error *
       *url = at + 4;
       return VS_OK;
     }
-    if (sscanf(at, "timeout_ms=%d%n", &r->timeout_ms, &used) != 1 || (at[used] && at[used] != '&') ||
-        r->timeout_ms < 1 || r->timeout_ms > 600000)
-      return vs_fail(err, VS_USAGE, "lcm: option '%.80s': allowed are timeout_ms=1 to 600000, then url=URL", at);
+    bool known =
+        sscanf(at, "timeout_ms=%d%n", &r->timeout_ms, &used) == 1 || sscanf(at, "remote=%d%n", &r->far, &used) == 1;
+    if (!known || (at[used] && at[used] != '&') || r->timeout_ms < 1 || r->timeout_ms > 600000 || r->far >> 1)
+      return vs_fail(err, VS_USAGE,
+                     "lcm: option '%.80s': allowed are timeout_ms=1 to 600000, remote=1 (the player is on another "
+                     "machine), then url=URL",
+                     at);
     at += used + (at[used] == '&');
   }
   return VS_OK;
@@ -73,7 +78,9 @@ static vs_status start(void *state, uint64_t seed, const char *options, vs_error
   if (s == VS_OK && strncmp(url, "udpm://", 7) != 0)
     s = vs_fail(err, VS_USAGE, "lcm: url %.100s: only udpm:// reaches another process", url);
   if (s == VS_OK) s = vs_bus_open(url, &r->bus, err);
-  if (s == VS_OK) s = vs_bus_subscribe(r->bus, VS_CH_CMD, false, on_command, r, err);
+  if (s == VS_OK)
+    s = r->far ? vs_bus_subscribe(r->bus, VS_CH_CMD, false, on_command, r, err)
+               : vs_bus_subscribe_near(r->bus, VS_CH_CMD, on_command, r, err);
   // Numbers that answers to an earlier match do not have.
   r->seq = (uint32_t)(vs_clock_monotonic_us() ^ (int64_t)seed) & 0x3fffffff;
   if (s != VS_OK) end(state);

@@ -29,6 +29,15 @@ vs_status vs_bus_subscribe(vs_bus *bus, vs_channel channel, bool newest_only, vs
   return vs_bus_supported(err);
 }
 
+vs_status vs_bus_subscribe_near(vs_bus *bus, vs_channel channel, vs_bus_handler handler, void *user, vs_error *err) {
+  return vs_bus_subscribe(bus, channel, false, handler, user, err);
+}
+
+int64_t vs_bus_far(const vs_bus *bus) {
+  (void)bus;
+  return 0;
+}
+
 vs_status vs_bus_handle(vs_bus *bus, int timeout_ms, int *handled, vs_error *err) {
   (void)bus, (void)timeout_ms;
   if (handled) *handled = 0;

@@ -16,6 +16,11 @@ vs_status vs_radio_link_init(vs_radio_link *link, const uint8_t id[VS_TEAM_SIZE]
   return VS_OK;
 }
 
+void vs_radio_link_set_key(vs_radio_link *link, const vs_radio_key *key, int64_t wall_us) {
+  link->decoder.key = *key;
+  link->counter = (uint64_t)(wall_us / 1000000) << 16 | (uint64_t)(wall_us % 1000000) * 65536 / 1000000;
+}
+
 void vs_radio_link_command(vs_radio_link *link, const vs_wheels wheels[VS_TEAM_SIZE], bool stop, int64_t decided_us) {
   link->have_command = true;
   link->stop = stop;
@@ -26,10 +31,11 @@ void vs_radio_link_command(vs_radio_link *link, const vs_wheels wheels[VS_TEAM_S
   }
 }
 
-static size_t write_command(const vs_radio_link *link, uint8_t seq, bool stop, uint8_t out[VS_RADIO_FRAME_MAX]) {
+static size_t write_command(const vs_radio_link *link, uint64_t counter, bool stop, uint8_t out[VS_RADIO_FRAME_MAX]) {
   vs_radio_frame frame = {.type = VS_RADIO_COMMAND};
   vs_radio_command *c = &frame.as.command;
-  c->seq = seq;
+  c->seq = (uint8_t)counter;
+  c->counter = counter;
   c->flags = stop ? VS_RADIO_FLAG_STOP : 0;
   c->n = VS_TEAM_SIZE;
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
@@ -37,15 +43,15 @@ static size_t write_command(const vs_radio_link *link, uint8_t seq, bool stop, u
     c->robot[i].left = stop ? 0 : vs_radio_counts(link->wheels[i].left_radps);
     c->robot[i].right = stop ? 0 : vs_radio_counts(link->wheels[i].right_radps);
   }
-  return vs_radio_encode(&frame, out);
+  return vs_radio_encode_keyed(&frame, &link->decoder.key, out);
 }
 
 static size_t emit(vs_radio_link *link, bool stop, int64_t now_us, uint8_t out[VS_RADIO_FRAME_MAX]) {
-  uint8_t seq = link->seq++;
-  link->sent_us[seq] = now_us;
+  uint64_t counter = link->counter++;
+  link->sent_us[(uint8_t)counter] = now_us;
   link->stopping = stop;
   link->command_age_us = link->have_command ? now_us - link->command_us : -1;
-  return write_command(link, seq, stop, out);
+  return write_command(link, counter, stop, out);
 }
 
 size_t vs_radio_link_due(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RADIO_FRAME_MAX]) {
@@ -61,7 +67,7 @@ size_t vs_radio_link_stop(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RA
 }
 
 size_t vs_radio_link_last_stop(const vs_radio_link *link, uint8_t ahead, uint8_t out[VS_RADIO_FRAME_MAX]) {
-  return write_command(link, (uint8_t)(link->seq + ahead), true, out);
+  return write_command(link, link->counter + ahead, true, out);
 }
 
 static void heard(vs_radio_link *link, const vs_radio_telemetry *t, int64_t now_us) {

@@ -126,7 +126,9 @@ vs_status vs_field_new(const vs_field_def *def, vs_field **out, char *note, size
   // Before anything starts a thread: the players' processes are forked from here.
   vs_status s = open_brain(f, def->policy, &f->control[0], err);
   if (s == VS_OK && def->fallback) s = open_brain(f, def->fallback, &f->control[1], err);
-  if (s == VS_OK) s = vs_sender_new(def->radio, def->baud, def->radio_id, &f->sender, err);
+  vs_sender_def radio = {.device = def->radio, .baud = def->baud, .key = def->key};
+  memcpy(radio.id, def->radio_id, sizeof radio.id);
+  if (s == VS_OK) s = vs_sender_new(&radio, &f->sender, err);
   if (s == VS_OK) s = open_eyes(f, note, note_size, err);
   if (s == VS_OK) s = vs_tap_open(&f->tap, &f->def, &f->calib, note, note_size, err);
   if (s != VS_OK) {

@@ -35,7 +35,9 @@ vs_status vs_tap_open(vs_tap *tap, const vs_field_def *def, const vs_calib *cali
   if (!def->lcm) return VS_OK;
   vs_error why = {0};
   vs_status s = vs_bus_open(def->lcm_url, &tap->bus, &why);
-  if (s == VS_OK) s = vs_bus_subscribe(tap->bus, VS_CH_REFEREE, false, referee_spoke, tap, &why);
+  if (s == VS_OK)
+    s = def->lcm_remote ? vs_bus_subscribe(tap->bus, VS_CH_REFEREE, false, referee_spoke, tap, &why)
+                        : vs_bus_subscribe_near(tap->bus, VS_CH_REFEREE, referee_spoke, tap, &why);
   if (s == VS_OK) {
     if (def->image_hz > 0.0 && vs_pictures_new(tap->bus, def->image_hz, &tap->pictures, &why) != VS_OK)
       add_note(note, note_size, "pictures on LCM", &why);

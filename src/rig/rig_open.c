@@ -73,7 +73,7 @@ static vs_status write_calib(vs_rig *r, vs_error *err) {
 }
 
 static vs_status open_radio(vs_rig *r, vs_error *err) {
-  vs_status s = vs_robots_open(&r->robots, r->def.radio_id, vs_clock_monotonic_us(), err);
+  vs_status s = vs_robots_open(&r->robots, r->def.radio_id, &r->def.key, vs_clock_monotonic_us(), err);
   if (s != VS_OK) return s;
   if (symlink(vs_pty_path(r->robots.pty), r->radio_path))
     return vs_fail(err, VS_FAIL, "%s: %s", r->radio_path, strerror(errno));

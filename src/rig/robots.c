@@ -11,12 +11,14 @@
 
 static uint32_t milliseconds(int64_t us) { return (uint32_t)(us / 1000); }
 
-vs_status vs_robots_open(vs_robots *r, const uint8_t id[VS_TEAM_SIZE], int64_t now_us, vs_error *err) {
+vs_status vs_robots_open(vs_robots *r, const uint8_t id[VS_TEAM_SIZE], const vs_radio_key *key, int64_t now_us,
+                         vs_error *err) {
   memset(r, 0, sizeof *r);
   vs_status s = vs_pty_new(&r->pty, err);
   if (s != VS_OK) return s;
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     vs_firmware_init(&r->firmware[i], id[i], milliseconds(now_us));
+    vs_firmware_set_key(&r->firmware[i], key);
     r->telemetry_us[i] = now_us + TELEMETRY_US + i * (TELEMETRY_US / VS_TEAM_SIZE);
   }
   return VS_OK;

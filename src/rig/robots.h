@@ -13,7 +13,8 @@ typedef struct vs_robots {
   int64_t taken;                      // frames the robots took
 } vs_robots;
 
-vs_status vs_robots_open(vs_robots *robots, const uint8_t id[VS_TEAM_SIZE], int64_t now_us, vs_error *err);
+vs_status vs_robots_open(vs_robots *robots, const uint8_t id[VS_TEAM_SIZE], const vs_radio_key *key, int64_t now_us,
+                         vs_error *err);
 void vs_robots_close(vs_robots *robots);
 
 // Hands on what comes over the air, until wake_us. measured: the wheels as they turn, for the telemetry.

@@ -145,6 +145,65 @@ static void an_unplugged_radio_does_not_end_the_bridge(void **state) {
   unlink(v.out);
 }
 
+// A log with commands, to be sent from another machine.
+static void write_commands(const char *path) {
+  char url[160];
+  vs_bus *log;
+  snprintf(url, sizeof url, "file://%s?mode=w", path);
+  assert_ok(vs_bus_open(url, &log, err));
+  for (int i = 0; i < 20; i++) {
+    vs_message m = {.channel = VS_CH_CMD, .seq = i};
+    m.as.cmd = (vs_msg_cmd){.team = VS_BLUE, .wheels = {{1, 1}, {1, 1}, {1, 1}}, .source = "far"};
+    assert_ok(vs_bus_publish(log, &m, err));
+    vs_clock_sleep_until_us(vs_clock_monotonic_us() + 2000);
+  }
+  vs_bus_close(log);
+}
+
+// Commands that a bridge on one machine took from another one; -1: this machine cannot be two.
+static int taken_from_afar(const char *flags, const char *log, const char *out, vs_pty *pty) {
+  char binary[4096], command[10000];
+  vsss_binary(binary, sizeof binary);
+  snprintf(command, sizeof command,
+           "sh tests/cli/two_machines.sh '%s bridge --go --radio %s --lcm udpm://239.255.76.67:7667?ttl=1 %s' "
+           "'%s replay %s --publish --lcm udpm://239.255.76.67:7667?ttl=1' >%s 2>&1",
+           binary, vs_pty_path(pty), flags, binary, log, out);
+  int status = system(command);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 77) return -1;
+  static char text[8192];
+  FILE *f = fopen(out, "r");
+  text[f ? fread(text, 1, sizeof text - 1, f) : 0] = '\0';
+  if (f) fclose(f);
+  const char *line = strstr(text, " commands, ");
+  if (!line) fail_msg("the bridge did not report: %s", text);
+  while (line > text && line[-1] >= '0' && line[-1] <= '9') line--;
+  bool told = strstr(text, "messages of other machines were not obeyed") != NULL;
+  assert_int_equal(told, !*flags);
+  return atoi(line);
+}
+
+static void another_machine_is_obeyed_only_when_told_so(void **state) {
+  (void)state;
+  char log[64], out[64];
+  vs_pty *pty;
+  snprintf(log, sizeof log, "/tmp/vsss_far_%ld.lcm", (long)getpid());
+  snprintf(out, sizeof out, "/tmp/vsss_far_%ld.out", (long)getpid());
+  if (vs_bus_supported(NULL) != VS_OK) skip();
+  write_commands(log);
+  assert_ok(vs_pty_new(&pty, err));
+  int told = taken_from_afar("--lcm-remote", log, out, pty),
+      untold = told < 0 ? -1 : taken_from_afar("", log, out, pty);
+  vs_pty_free(pty);
+  unlink(log);
+  unlink(out);
+  if (told < 0) {
+    print_message("note: this machine does not allow network namespaces\n");
+    skip();
+  }
+  assert_true(told > 0);
+  assert_int_equal(untold, 0);
+}
+
 static void wrong_calls_are_named(void **state) {
   (void)state;
   assert_refused("bridge", 2, "--radio is needed");
@@ -161,6 +220,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(commands_drive_silence_stops_and_the_end_stops),
       cmocka_unit_test(an_unplugged_radio_does_not_end_the_bridge),
+      cmocka_unit_test(another_machine_is_obeyed_only_when_told_so),
       cmocka_unit_test(wrong_calls_are_named),
   };
   return cmocka_run_group_tests_name("cli/bridge", tests, NULL, NULL);

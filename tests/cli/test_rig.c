@@ -131,6 +131,45 @@ static void the_robots_obey_the_radio_and_report(void **state) {
   assert_int_not_equal(access(path, F_OK), 0);
 }
 
+static void write_text(const char *path, const char *text) {
+  FILE *f = fopen(path, "w");
+  assert_non_null(f);
+  fputs(text, f);
+  fclose(f);
+}
+
+// Frames with the key of field.ini drive the robots, others do nothing; each is sent until it was surely read.
+static void robots_with_a_key_obey_nobody_else(void **state) {
+  (void)state;
+  char config[96], flags[128], device[96];
+  snprintf(config, sizeof config, "%s/field.ini", folder);
+  write_text(config, "[radio]\nteam_id = 9\nkey = 0102030405060708090a0b0c0d0e0f10\n");
+  snprintf(flags, sizeof flags, "--opponent zero: --config %s", config);
+  pid_t rig = start_rig(flags);
+  if (!rig) return;
+  vs_serial *radio;
+  snprintf(device, sizeof device, "%s/radio", venue);
+  assert_ok(vs_serial_open(device, VS_SERIAL_BAUD, &radio, err));
+  vs_radio_key key;
+  assert_true(vs_radio_key_parse(9, "0102030405060708090a0b0c0d0e0f10", &key));
+  vs_radio_frame frame = {.type = VS_RADIO_COMMAND};
+  frame.as.command = (vs_radio_command){.n = 3, .robot = {{0, 500, 500}, {1, 500, 500}, {2, 500, 500}}};
+  for (int i = 0; i < 40; i++) {
+    uint8_t bytes[VS_RADIO_FRAME_MAX];
+    frame.as.command.seq = (uint8_t)i;
+    frame.as.command.counter = (uint64_t)(i + 1);
+    bool keyed = i >= 20;
+    vs_serial_write(radio, bytes, keyed ? vs_radio_encode_keyed(&frame, &key, bytes) : vs_radio_encode(&frame, bytes),
+                    vs_clock_monotonic_us());
+    vs_clock_sleep_until_us(vs_clock_monotonic_us() + 10000);
+  }
+  vs_clock_sleep_until_us(vs_clock_monotonic_us() + 200000);
+  vs_serial_close(radio);
+  kill(rig, SIGINT);
+  assert_int_equal(vsss_wait(rig, 20), 0);
+  assert_non_null(strstr(read_text(log_path), " 60 radio frames taken")); // 20 by each of three robots
+}
+
 static void a_second_rig_in_the_same_folder_is_refused(void **state) {
   (void)state;
   pid_t rig = start_rig("");
@@ -140,13 +179,6 @@ static void a_second_rig_in_the_same_folder_is_refused(void **state) {
   assert_refused(arguments, 1, "in use by another rig");
   kill(rig, SIGINT);
   assert_int_equal(vsss_wait(rig, 20), 0);
-}
-
-static void write_text(const char *path, const char *text) {
-  FILE *f = fopen(path, "w");
-  assert_non_null(f);
-  fputs(text, f);
-  fclose(f);
 }
 
 static void make_venue(void) {
@@ -275,6 +307,7 @@ int main(void) {
       cmocka_unit_test(planted_links_are_refused_and_what_they_point_at_is_kept),
       cmocka_unit_test(a_folder_that_is_not_only_the_users_is_refused),
       cmocka_unit_test(what_a_killed_rig_left_is_replaced_and_the_folder_is_private),
+      cmocka_unit_test(robots_with_a_key_obey_nobody_else),
       cmocka_unit_test(a_second_rig_in_the_same_folder_is_refused),
   };
   return cmocka_run_group_tests_name("cli/rig", tests, make_folder, remove_folder);

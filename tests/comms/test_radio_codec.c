@@ -75,8 +75,9 @@ static int hex(const char *text, uint8_t *out) {
 }
 
 static void golden_command(const char *text, vs_radio_frame *f) {
-  int seq, flags, at, id, left, right, more;
-  assert_int_equal(sscanf(text, "command %d %d%n", &seq, &flags, &at), 2);
+  long long seq;
+  int flags, at, id, left, right, more;
+  assert_int_equal(sscanf(text, "command %lld %d%n", &seq, &flags, &at), 2);
   f->type = VS_RADIO_COMMAND;
   f->as.command.seq = (uint8_t)seq;
   f->as.command.flags = (uint8_t)flags;
@@ -95,32 +96,43 @@ static void golden_telemetry(const char *text, vs_radio_frame *f) {
                                          (int8_t)v[5],  (uint16_t)v[6], (uint16_t)v[7], uptime};
 }
 
-static void golden_frames_are_written_and_read(void **state) {
-  (void)state;
+// Every line of a golden file is written byte for byte and read back. The key line, where there is one, comes first.
+static int check_golden(const char *name) {
   char path[512], line[512];
-  assert_ok(vs_path_find("tests/golden/radio_v1.txt", path, sizeof path, err));
+  assert_ok(vs_path_find(name, path, sizeof path, err));
   FILE *file = fopen(path, "r");
   assert_non_null(file);
   int checked = 0;
+  vs_radio_key key = {.set = false};
   while (fgets(line, sizeof line, file)) {
     if (line[0] == '#') continue;
+    int team = 0;
+    char digits[64];
+    if (sscanf(line, "key %d %63s", &team, digits) == 2) {
+      assert_true(vs_radio_key_parse(team, digits, &key));
+      continue;
+    }
     vs_radio_frame f, back;
     memset(&f, 0, sizeof f);
     memset(&back, 0, sizeof back);
-    if (line[0] == 'c')
+    if (line[0] == 'c') {
       golden_command(line, &f);
-    else
+      f.as.command.counter = strtoull(line + strlen("command "), NULL, 10);
+    } else {
       golden_telemetry(line, &f);
+    }
     uint8_t want[VS_RADIO_FRAME_MAX], got[VS_RADIO_FRAME_MAX];
     int n = hex(strchr(line, '=') + 2, want);
-    assert_int_equal(vs_radio_encode(&f, got), n);
+    assert_int_equal(vs_radio_encode_keyed(&f, &key, got), n);
     assert_memory_equal(got, want, (size_t)n);
-    vs_radio_decoder decoder = {0};
+    vs_radio_decoder decoder = {.key = key};
     assert_int_equal(feed(&decoder, want, (size_t)n, &back), 1);
     if (f.type == VS_RADIO_COMMAND) {
       assert_true(same_command(&f, &back));
+      if (key.set) assert_true(f.as.command.counter == back.as.command.counter);
     } else {
       assert_int_equal(back.type, VS_RADIO_TELEMETRY);
+      assert_int_equal(back.as.telemetry.id, f.as.telemetry.id);
       assert_int_equal(back.as.telemetry.rssi_dbm, f.as.telemetry.rssi_dbm);
       assert_int_equal(back.as.telemetry.right, f.as.telemetry.right);
       assert_int_equal(back.as.telemetry.uptime_ms, f.as.telemetry.uptime_ms);
@@ -128,7 +140,105 @@ static void golden_frames_are_written_and_read(void **state) {
     checked++;
   }
   fclose(file);
-  assert_int_equal(checked, 9);
+  return checked;
+}
+
+static void golden_frames_are_written_and_read(void **state) {
+  (void)state;
+  assert_int_equal(check_golden("tests/golden/radio_v1.txt"), 9);
+}
+
+static void golden_frames_with_a_key_are_written_and_read(void **state) {
+  (void)state;
+  assert_int_equal(check_golden("tests/golden/radio_v2.txt"), 8);
+}
+
+static vs_radio_key key_of(int team, const char *digits) {
+  vs_radio_key key;
+  assert_true(vs_radio_key_parse(team, digits, &key));
+  return key;
+}
+
+// What of the four forms each receiver takes: none set, our key, our number with another key, another number with our key.
+static void a_frame_is_taken_only_by_those_of_the_same_key(void **state) {
+  (void)state;
+  const vs_radio_key keys[4] = {{.set = false},
+                                key_of(7, "000102030405060708090a0b0c0d0e0f"),
+                                key_of(7, "000102030405060708090a0b0c0d0e10"),
+                                key_of(8, "000102030405060708090a0b0c0d0e0f")};
+  vs_rng rng = vs_rng_make(7, 0);
+  for (int round = 0; round < 200; round++)
+    for (int from = 0; from < 4; from++)
+      for (int to = 0; to < 4; to++) {
+        vs_radio_frame f = random_command(&rng, 3), out;
+        f.as.command.counter = (uint64_t)f.as.command.seq;
+        f.as.command.flags = VS_RADIO_FLAG_STOP;
+        uint8_t bytes[VS_RADIO_FRAME_MAX];
+        size_t size = vs_radio_encode_keyed(&f, &keys[from], bytes);
+        vs_radio_decoder decoder = {.key = keys[to]};
+        assert_int_equal(feed(&decoder, bytes, size, &out), from == to);
+        assert_int_equal(decoder.foreign, from != to);
+      }
+}
+
+// With the CRC made to fit, so that the check alone stands against it.
+static void a_changed_bit_fails_the_check(void **state) {
+  (void)state;
+  vs_radio_key key = key_of(7, "0102030405060708090a0b0c0d0e0f10");
+  // A command for one robot in which no byte is zero: COBS adds one byte only.
+  uint8_t payload[] = {0x21, 7, 9, 9, 9, 9, 9, 9, 2, 1, 3, 1, 1, 2, 2, 0, 0, 0, 0, 0, 0};
+  size_t body = sizeof payload - 6;
+  do {
+    payload[2]++;
+    uint32_t check = (uint32_t)vs_siphash(key.secret, payload, body);
+    for (int i = 0; i < 4; i++) payload[body + (size_t)i] = (uint8_t)(check >> 8 * i);
+    uint16_t crc = vs_radio_crc(payload, sizeof payload - 2);
+    payload[body + 4] = (uint8_t)crc;
+    payload[body + 5] = (uint8_t)(crc >> 8);
+  } while (memchr(payload, 0, sizeof payload));
+  int tried = 0;
+  for (size_t bit = 0; bit <= 8 * (body + 4); bit++) { // the last: none
+    uint8_t changed[sizeof payload], bytes[sizeof payload + 2];
+    memcpy(changed, payload, sizeof payload);
+    if (bit < 8 * (body + 4)) changed[bit / 8] ^= (uint8_t)(1 << bit % 8);
+    uint16_t crc = vs_radio_crc(changed, sizeof changed - 2);
+    changed[body + 4] = (uint8_t)crc;
+    changed[body + 5] = (uint8_t)(crc >> 8);
+    if (memchr(changed, 0, sizeof changed)) continue;
+    bytes[0] = sizeof changed + 1;
+    memcpy(bytes + 1, changed, sizeof changed);
+    bytes[sizeof bytes - 1] = 0;
+    vs_radio_decoder decoder = {.key = key};
+    vs_radio_frame out;
+    assert_int_equal(feed(&decoder, bytes, sizeof bytes, &out), bit == 8 * (body + 4));
+    tried++;
+  }
+  assert_true(tried > 100);
+}
+
+static void a_key_is_32_hexadecimal_digits(void **state) {
+  (void)state;
+  vs_radio_key key;
+  assert_true(vs_radio_key_parse(255, "0123456789abcdefABCDEF9876543210", &key));
+  assert_int_equal(key.secret[0], 0x01);
+  assert_int_equal(key.secret[8], 0xAB);
+  assert_int_equal(key.secret[15], 0x10);
+  assert_false(vs_radio_key_parse(256, "0123456789abcdefABCDEF9876543210", &key));
+  assert_false(vs_radio_key_parse(0, "", &key));
+  assert_false(vs_radio_key_parse(0, "0123456789abcdefABCDEF987654321", &key));
+  assert_false(vs_radio_key_parse(0, "0123456789abcdefABCDEF98765432100", &key));
+  assert_false(vs_radio_key_parse(0, "0123456789abcdefABCDEF987654321g", &key));
+}
+
+static void three_robots_with_a_key_fit_a_packet_of_32_bytes(void **state) {
+  (void)state;
+  vs_rng rng = vs_rng_make(8, 0);
+  vs_radio_key key = key_of(1, "0102030405060708090a0b0c0d0e0f10");
+  vs_radio_frame f = random_command(&rng, 3);
+  uint8_t bytes[VS_RADIO_FRAME_MAX];
+  assert_int_equal(vs_radio_encode_keyed(&f, &key, bytes), 32 + 2); // with two delimiters
+  f.as.command.n = VS_RADIO_ROBOTS_MAX;
+  assert_true(vs_radio_encode_keyed(&f, &key, bytes) <= VS_RADIO_FRAME_MAX);
 }
 
 static void frame_cut_at_every_point_arrives_once(void **state) {
@@ -200,7 +310,7 @@ static void bytes_a_terminal_would_eat_survive(void **state) {
     vs_radio_frame f = {.type = VS_RADIO_COMMAND}, out;
     uint8_t b = special[i];
     int16_t both = (int16_t)(b | b << 8);
-    f.as.command = (vs_radio_command){b, b, 2, {{b, both, both}, {(uint8_t)(b + 1), both, both}}};
+    f.as.command = (vs_radio_command){b, b, 2, {{b, both, both}, {(uint8_t)(b + 1), both, both}}, 0};
     uint8_t bytes[VS_RADIO_FRAME_MAX];
     size_t size = vs_radio_encode(&f, bytes);
     assert_null(memchr(bytes + 1, 0, size - 2));
@@ -266,6 +376,11 @@ int main(void) {
       cmocka_unit_test(three_robots_take_24_bytes),
       cmocka_unit_test(speeds_round_and_saturate),
       cmocka_unit_test(golden_frames_are_written_and_read),
+      cmocka_unit_test(golden_frames_with_a_key_are_written_and_read),
+      cmocka_unit_test(a_frame_is_taken_only_by_those_of_the_same_key),
+      cmocka_unit_test(a_changed_bit_fails_the_check),
+      cmocka_unit_test(a_key_is_32_hexadecimal_digits),
+      cmocka_unit_test(three_robots_with_a_key_fit_a_packet_of_32_bytes),
       cmocka_unit_test(frame_cut_at_every_point_arrives_once),
       cmocka_unit_test(every_single_bit_flip_is_rejected),
       cmocka_unit_test(garbage_before_a_frame_costs_nothing),

@@ -233,6 +233,90 @@ static void telemetry_comes_back_with_the_round_trip(void **state) {
   assert_int_equal(link.foreign, 1);
 }
 
+static vs_radio_link keyed(int team, int64_t wall_us) {
+  vs_radio_link link = fresh();
+  vs_radio_key key;
+  assert_true(vs_radio_key_parse(
+      team, team == 1 ? "0102030405060708090a0b0c0d0e0f10" : "1112131415161718191a1b1c1d1e1f20", &key));
+  vs_radio_link_set_key(&link, &key, wall_us);
+  return link;
+}
+
+static vs_firmware robot_of(const vs_radio_link *link) {
+  vs_firmware robot;
+  vs_firmware_init(&robot, 7, 0);
+  vs_firmware_set_key(&robot, &link->decoder.key);
+  return robot;
+}
+
+// Both teams number their robots 4, 7, 9 and send at 50 Hz on one channel, 10 ms apart; the other team drives backwards and
+// then stops, and a program without a key sends too.
+static void two_teams_on_one_channel_drive_their_own_robots(void **state) {
+  (void)state;
+  vs_radio_link ours = keyed(1, 1700000000000000), theirs = keyed(2, 1900000000000000), nobodys = fresh();
+  vs_firmware robot = robot_of(&ours), opponent = robot_of(&theirs);
+  const vs_wheels ahead[VS_TEAM_SIZE] = {{5, 5}, {5, 5}, {5, 5}}, back[VS_TEAM_SIZE] = {{-5, -5}, {-5, -5}, {-5, -5}};
+  int right = 0, opponent_right = 0;
+  for (int ms = 0; ms < 5000; ms++) {
+    int64_t now_us = 1000000 + 1000LL * ms;
+    uint8_t bytes[VS_RADIO_FRAME_MAX];
+    size_t size = 0;
+    bool stops = ms >= 2500;
+    if (ms % 20 == 0) {
+      vs_radio_link_command(&ours, ahead, false, now_us);
+      size = vs_radio_link_due(&ours, now_us, bytes);
+    } else if (ms % 20 == 10) {
+      vs_radio_link_command(&theirs, back, stops, now_us);
+      size = vs_radio_link_due(&theirs, now_us, bytes);
+    } else if (ms % 20 == 15) {
+      size = vs_radio_link_stop(&nobodys, now_us, bytes);
+    }
+    vs_firmware_receive(&robot, bytes, size, (uint32_t)ms);
+    vs_firmware_receive(&opponent, bytes, size, (uint32_t)ms);
+    vs_firmware_drive a = vs_firmware_tick(&robot, (uint32_t)ms), b = vs_firmware_tick(&opponent, (uint32_t)ms);
+    right += !a.brake && a.left == 500 && a.right == 500;
+    opponent_right += stops ? b.brake : !b.brake && b.left == -500;
+    // Our telemetry is ours alone, though the numbers on the air are the same.
+    size = vs_firmware_telemetry(&opponent, (uint32_t)ms, 1, 1, 1111, 0, bytes);
+    vs_radio_link_receive(&ours, bytes, size, now_us);
+    size = vs_firmware_telemetry(&robot, (uint32_t)ms, 1, 1, 7777, 0, bytes);
+    vs_radio_link_receive(&ours, bytes, size, now_us);
+    assert_int_equal(ours.robot[1].last.battery_mv, 7777);
+  }
+  assert_int_equal(right, 5000);
+  assert_true(opponent_right >= 4980); // 10 ms of silence at its start and at its stop
+  assert_int_equal(ours.decoder.foreign, 5000);
+}
+
+static void a_frame_with_a_key_is_taken_once_after_silence_too(void **state) {
+  (void)state;
+  vs_radio_link link = keyed(1, 1700000000000000);
+  vs_firmware robot = robot_of(&link);
+  uint8_t bytes[VS_RADIO_FRAME_MAX], later[VS_RADIO_FRAME_MAX];
+  vs_radio_link_command(&link, wheels, false, 1000000);
+  size_t size = vs_radio_link_due(&link, 1000000, bytes);
+  vs_firmware_receive(&robot, bytes, size, 0);
+  assert_false(vs_firmware_tick(&robot, 1).brake);
+  assert_true(vs_firmware_tick(&robot, 1000).brake); // the watchdog
+  vs_firmware_receive(&robot, bytes, size, 1001);    // recorded and sent again
+  assert_true(vs_firmware_tick(&robot, 1002).brake);
+  assert_int_equal(robot.rx_bad, 1);
+  // A PC that starts anew 20 ms later counts on above; one whose clock is a second behind does not.
+  vs_radio_link next = keyed(1, 1700000000020000), behind = keyed(1, 1699999999000000);
+  vs_radio_link_command(&next, wheels, false, 1000000);
+  vs_radio_link_command(&behind, wheels, false, 1000000);
+  size = vs_radio_link_due(&behind, 1000000, later);
+  vs_firmware_receive(&robot, later, size, 1003);
+  assert_true(vs_firmware_tick(&robot, 1004).brake);
+  size = vs_radio_link_due(&next, 1000000, later);
+  vs_firmware_receive(&robot, later, size, 1005);
+  assert_false(vs_firmware_tick(&robot, 1006).brake);
+  // The last word of a program that dies is newer than any frame it sent.
+  size = vs_radio_link_last_stop(&next, 16, later);
+  vs_firmware_receive(&robot, later, size, 1007);
+  assert_true(vs_firmware_tick(&robot, 1008).brake);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(without_a_command_it_sends_stop),
@@ -250,6 +334,8 @@ int main(void) {
       cmocka_unit_test(after_silence_any_seq_is_taken),
       cmocka_unit_test(targets_are_limited),
       cmocka_unit_test(telemetry_comes_back_with_the_round_trip),
+      cmocka_unit_test(two_teams_on_one_channel_drive_their_own_robots),
+      cmocka_unit_test(a_frame_with_a_key_is_taken_once_after_silence_too),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
