@@ -39,9 +39,13 @@ void vs_image_disc(vs_image *image, double x_px, double y_px, double radius_px, 
 // The following need OpenCV (module "opencv"): without it VS_FAIL says what to install.
 // Writes a picture; the ending of path chooses PNG or JPEG.
 vs_status vs_image_save(const char *path, const uint8_t *bgr, int stride, int width, int height, vs_error *err);
-// JPEG into out[capacity], its length into *size. VS_FAIL where it does not fit. shrink: 1 full size, 2 half, ...
-vs_status vs_image_jpeg(const uint8_t *bgr, int stride, int width, int height, int quality, int shrink, uint8_t *out,
-                        size_t capacity, size_t *size, vs_error *err);
+// JPEG of quality 1 to 100 into out[capacity], its length into *size. VS_FAIL where it does not fit. shrink: 1 full size,
+// 2 half, ... The picture is only read.
+typedef struct vs_jpeg_def {
+  int quality, shrink;
+} vs_jpeg_def;
+vs_status vs_image_jpeg(const vs_image *image, const vs_jpeg_def *def, uint8_t *out, size_t capacity, size_t *size,
+                        vs_error *err);
 
 #ifdef __cplusplus
 }

@@ -87,6 +87,23 @@ typedef struct vs_train_report {
   double frozen_score, replacements, pool, self_score, pool_score; // league; scores: mean goal difference lately
 } vs_train_report;
 
+// Result of matches against one opponent: shares of them, and means per match with the 95 % interval of the score.
+typedef struct vs_train_score {
+  const char *opponent; // borrowed
+  double matches, win, draw, loss, goals_for, goals_against, score, score_low, score_high;
+} vs_train_score;
+
+// Matches of 120 s on the contact drive by the paper's rules: a policy file against any player. The same seed, the same
+// matches.
+typedef struct vs_train_eval_def {
+  const char *policy_file, *opponent;
+  int matches, threads;
+  uint64_t seed;
+  bool (*go_on)(void *context); // may be NULL; false ends it: score.matches is then how many were played
+  void *context;
+} vs_train_eval_def;
+vs_status vs_train_evaluate(const vs_train_eval_def *def, vs_train_score *out, vs_error *err);
+
 typedef struct vs_train_column {
   const char *name; // of the CSV
   const char *tag;  // of TensorBoard
@@ -94,6 +111,12 @@ typedef struct vs_train_column {
 } vs_train_column;
 const vs_train_column *vs_train_columns(int *count);
 double vs_train_value(const vs_train_report *report, const vs_train_column *column);
+
+// For a program, before its first thread: sets the environment variables that the libraries of training read when they
+// load, where the user has not: OPENBLAS_NUM_THREADS, OPENBLAS_CORETYPE, OMPI_MCA_pml. Nothing else in this module
+// touches its host's environment; without this call it is the same training, slower over OpenBLAS on new processors, and
+// under mpirun with the transport that Open MPI picks.
+void vs_learn_environment(void);
 
 // Ranks that train together: under `mpirun -n K` the program's processes share the gradients. Collective: every rank
 // makes the same calls. NULL: alone.

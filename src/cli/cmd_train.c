@@ -149,9 +149,14 @@ static bool not_interrupted(void *context) {
 }
 
 static vs_status evaluate_against(session *s, const char *opponent, const char *policy, vs_error *err) {
-  vs_journal_eval eval;
-  vs_status status = vs_train_evaluate(policy, opponent, s->opt->eval_matches, vs_train_settings(s->train)->threads, 1,
-                                       not_interrupted, NULL, &eval, err);
+  const vs_train_eval_def def = {.policy_file = policy,
+                                 .opponent = opponent,
+                                 .matches = s->opt->eval_matches,
+                                 .threads = vs_train_settings(s->train)->threads,
+                                 .seed = 1,
+                                 .go_on = not_interrupted};
+  vs_train_score eval;
+  vs_status status = vs_train_evaluate(&def, &eval, err);
   if (status != VS_OK || eval.matches < s->opt->eval_matches) return status;
   size_t used = strlen(s->scores);
   snprintf(s->scores + used, sizeof s->scores - used, "%s%s %.2f", used ? ", " : "", opponent, eval.score);
@@ -352,6 +357,7 @@ int cmd_train(int argc, char **argv) {
   vs_status s = vs_args_parse(argc, argv, "train [flags]", "Learns by self-play.", flags, NULL, &help, &err);
   if (s != VS_OK) return vs_cli_error("train", &err);
   if (help) return 0;
+  vs_learn_environment();
   uint64_t seed = 1;
   if (o.untrained && o.seed && !vs_parse_seed(o.seed, &seed))
     s = vs_fail(&err, VS_USAGE, "--seed %s: expected a whole number from 0 to 2^64-1", o.seed);

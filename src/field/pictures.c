@@ -29,13 +29,14 @@ struct vs_pictures {
 // The best of falling qualities and sizes that fits one datagram.
 static vs_status squeeze(vs_pictures *p, vs_msg_image *image, vs_error *err) {
   static const int qualities[] = {80, 60, 40, 25};
+  const vs_image frame = {p->bgr, p->width, p->height, 3 * p->width};
   vs_status s = VS_FAIL;
   for (int shrink = 1; shrink <= SHRINK_MAX && s != VS_OK; shrink++) {
     if (p->width / shrink > WIDTH_PX) continue;
     for (size_t i = 0; i < sizeof qualities / sizeof *qualities && s != VS_OK; i++) {
       size_t size = 0;
-      s = vs_image_jpeg(p->bgr, 3 * p->width, p->width, p->height, qualities[i], shrink, p->jpeg, sizeof p->jpeg, &size,
-                        err);
+      const vs_jpeg_def def = {qualities[i], shrink};
+      s = vs_image_jpeg(&frame, &def, p->jpeg, sizeof p->jpeg, &size, err);
       *image = (vs_msg_image){p->width / shrink, p->height / shrink, "jpeg", (int)size, p->jpeg};
     }
   }
@@ -78,11 +79,12 @@ static int start(vs_pictures *p) {
 vs_status vs_pictures_new(vs_bus *bus, double hz, vs_pictures **out, vs_error *err) {
   *out = NULL;
   if (!(hz >= 0.1 && hz <= 5.0)) return vs_fail(err, VS_USAGE, "%g pictures a second: allowed are 0.1 to 5", hz);
-  static const uint8_t black[8 * 8 * 3];
+  uint8_t pixels[8 * 8 * 3] = {0};
+  const vs_image black = {pixels, 8, 8, 8 * 3};
+  const vs_jpeg_def def = {80, 1};
   uint8_t jpeg[2048];
   size_t size;
-  vs_status s =
-      vs_image_jpeg(black, 8 * 3, 8, 8, 80, 1, jpeg, sizeof jpeg, &size, err); // loads OpenCV now, not in play
+  vs_status s = vs_image_jpeg(&black, &def, jpeg, sizeof jpeg, &size, err); // loads OpenCV now, not in play
   if (s != VS_OK) return s;
   vs_pictures *p = calloc(1, sizeof *p);
   if (!p) return vs_fail(err, VS_FAIL, "out of memory");

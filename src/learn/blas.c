@@ -2,7 +2,7 @@
 
 #include <dlfcn.h>
 #include <math.h>
-#include <stdlib.h>
+#include <stddef.h>
 
 #include "vsss/signals.h"
 
@@ -47,19 +47,7 @@ static vs_status open_onednn(vs_blas *out, vs_error *err) {
   return VS_OK;
 }
 
-// OpenBLAS chooses its kernels by the processor's model when it loads, and takes an old family for a model it does not
-// know: a processor with AVX-512 is told so, unless the user chose.
-static void choose_kernels(void) {
-  setenv("OPENBLAS_NUM_THREADS", "1", 0); // our threads share out the work, its own would only wait
-#if defined(__x86_64__)
-  __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-    setenv("OPENBLAS_CORETYPE", "SkylakeX", 0);
-#endif
-}
-
 static vs_status open_openblas(vs_blas *out, vs_error *err) {
-  choose_kernels();
   void *library = dlopen("libopenblas.so.0", RTLD_NOW | RTLD_LOCAL);
   if (!library) return vs_fail(err, VS_FAIL, "training needs OpenBLAS: apt install libopenblas0 (%.200s)", dlerror());
   *out = (vs_blas){.name = "OpenBLAS"};

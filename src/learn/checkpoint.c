@@ -46,8 +46,8 @@ static void save_learner(const vs_train *train, vs_bytes *out) {
                      vs_train_def_text(&train->def, false, settings, sizeof settings));
   vs_archive_section(out, &counters_section, &numbers, sizeof numbers);
   vs_archive_section(out, &parameters_section, l->parameters, l->net.size * sizeof(float));
-  vs_archive_section(out, &m_section, l->mean, l->net.size * sizeof(float));
-  vs_archive_section(out, &v_section, l->square, l->net.size * sizeof(float));
+  vs_archive_section(out, &m_section, l->m, l->net.size * sizeof(float));
+  vs_archive_section(out, &v_section, l->v, l->net.size * sizeof(float));
 }
 
 static vs_status add_matches(const vs_train *train, vs_bytes *out, vs_error *err) {
@@ -223,8 +223,8 @@ static vs_status load(vs_train *t, const vs_bytes *archive, const char *path, vs
   if (!counters_ok(&numbers)) return vs_fail(err, VS_FAIL, "%s: 'counters' holds a number that no run has", path);
   numbers.scale.on = t->def.value_scale;
   s = load_floats(archive, path, &parameters_section, l->parameters, l->net.size, err);
-  if (s == VS_OK) s = load_floats(archive, path, &m_section, l->mean, l->net.size, err);
-  if (s == VS_OK) s = load_floats(archive, path, &v_section, l->square, l->net.size, err);
+  if (s == VS_OK) s = load_floats(archive, path, &m_section, l->m, l->net.size, err);
+  if (s == VS_OK) s = load_floats(archive, path, &v_section, l->v, l->net.size, err);
   bool slim = !vs_archive_has(archive, "league", &found);
   if (s == VS_OK && !slim) s = vs_league_load(&t->league, archive, path, err);
   if (s == VS_OK && slim) vs_train_hand_over(t);

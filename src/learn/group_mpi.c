@@ -2,7 +2,6 @@
 #include <dlfcn.h>
 #include <limits.h>
 #include <mpi.h>
-#include <stdlib.h>
 
 #include "group.h"
 
@@ -48,9 +47,6 @@ static void close_group(void *self, bool failed) {
 vs_status vs_mpi_group(vs_group *out, vs_error *err) {
   // Open MPI's own plugins look for its symbols in the global scope, where a module's libraries are not.
   dlopen("libmpi.so.40", RTLD_NOW | RTLD_GLOBAL);
-  // Plain transports (memory, TCP) unless the user chose: on a machine without its hardware, Debian's build may pick one
-  // for InfiniBand or Omni-Path that writes to the terminal and never ends.
-  setenv("OMPI_MCA_pml", "ob1", 0);
   int have = 0;
   vs_status s = check(MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &have), "start", err);
   if (s != VS_OK) return s;

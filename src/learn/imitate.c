@@ -58,8 +58,8 @@ vs_status vs_train_imitate_over(vs_train *train, const vs_matches *matches, int 
   train->rollout = own_rollout;
   train->learner.def.ppo = own_ppo;
   // Adam's memory is of another loss.
-  memset(train->learner.mean, 0, train->learner.net.size * sizeof(float));
-  memset(train->learner.square, 0, train->learner.net.size * sizeof(float));
+  memset(train->learner.m, 0, train->learner.net.size * sizeof(float));
+  memset(train->learner.v, 0, train->learner.net.size * sizeof(float));
   train->learner.steps = 0;
   if (s == VS_OK) vs_train_hand_over(train);
   return s;

@@ -143,19 +143,19 @@ vs_status vs_journal_add(vs_journal *journal, const vs_train_report *report, vs_
   return s == VS_OK ? write_bytes(journal, &bytes, err) : (vs_bytes_free(&bytes), s);
 }
 
-vs_status vs_journal_add_eval(vs_journal *journal, const vs_train_report *report, const vs_journal_eval *eval,
+vs_status vs_journal_add_eval(vs_journal *journal, const vs_train_report *report, const vs_train_score *score,
                               vs_error *err) {
   fprintf(journal->eval, "%.0f,%.0f,%.1f,%s,%.0f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n", report->update,
-          report->transitions, report->wall_s, eval->opponent, eval->matches, eval->win, eval->draw, eval->loss,
-          eval->goals_for, eval->goals_against, eval->score, eval->score_low, eval->score_high);
+          report->transitions, report->wall_s, score->opponent, score->matches, score->win, score->draw, score->loss,
+          score->goals_for, score->goals_against, score->score, score->score_low, score->score_high);
   vs_bytes summary = {0}, bytes = {0};
   const struct {
     const char *name;
     double value;
-  } scalars[] = {{"win", eval->win}, {"draw", eval->draw}, {"loss", eval->loss}, {"score", eval->score}};
+  } scalars[] = {{"win", score->win}, {"draw", score->draw}, {"loss", score->loss}, {"score", score->score}};
   for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++) {
     char tag[160];
-    snprintf(tag, sizeof tag, "eval/%.100s %s", eval->opponent, scalars[i].name);
+    snprintf(tag, sizeof tag, "eval/%.100s %s", score->opponent, scalars[i].name);
     vs_tensorboard_scalar(&summary, tag, scalars[i].value);
   }
   vs_tensorboard_event(&bytes, now_s(), (int64_t)report->transitions, &summary);

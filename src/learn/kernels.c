@@ -54,17 +54,17 @@ CLONES void vs_kernel_dot(const float *restrict x, size_t stride, size_t rows, s
 }
 
 CLONES void vs_kernel_head_backward(const float *restrict x, float *restrict d, size_t stride, size_t rows,
-                                    size_t width, const float *restrict weight, const float *restrict dout,
-                                    size_t outputs, float *restrict dweight, float *restrict dbias) {
+                                    size_t width, const float *restrict weight, const float *restrict d_out,
+                                    size_t outputs, float *restrict d_weight, float *restrict d_bias) {
   for (size_t row = 0; row < rows; row++) {
     const float *restrict xr = x + row * stride;
     float *restrict dr = d + row * stride;
     for (size_t i = 0; i < width; i++) dr[i] = 0.0f;
     for (size_t o = 0; o < outputs; o++) {
-      float g = dout[row * outputs + o];
+      float g = d_out[row * outputs + o];
       const float *restrict w = weight + o * width;
-      float *restrict dw = dweight + o * width;
-      dbias[o] += g;
+      float *restrict dw = d_weight + o * width;
+      d_bias[o] += g;
       for (size_t i = 0; i < width; i++) dr[i] += g * w[i];
       for (size_t i = 0; i < width; i++) dw[i] += g * xr[i];
     }
@@ -99,13 +99,13 @@ CLONES double vs_kernel_square_sum(const float *restrict a, size_t count) {
   return sum;
 }
 
-CLONES void vs_kernel_adam(float *restrict parameter, const float *restrict gradient, float *restrict mean,
-                           float *restrict square, size_t count, const vs_adam_step *step) {
+CLONES void vs_kernel_adam(float *restrict parameter, const float *restrict gradient, float *restrict m,
+                           float *restrict v, size_t count, const vs_adam_step *step) {
   float rate = step->rate, beta1 = step->beta1, beta2 = step->beta2, epsilon = step->epsilon, scale = step->scale;
   for (size_t i = 0; i < count; i++) {
     float g = gradient[i] * scale;
-    mean[i] = beta1 * mean[i] + (1.0f - beta1) * g;
-    square[i] = beta2 * square[i] + (1.0f - beta2) * g * g;
-    parameter[i] -= rate * mean[i] / (sqrtf(square[i]) + epsilon);
+    m[i] = beta1 * m[i] + (1.0f - beta1) * g;
+    v[i] = beta2 * v[i] + (1.0f - beta2) * g * g;
+    parameter[i] -= rate * m[i] / (sqrtf(v[i]) + epsilon);
   }
 }

@@ -18,10 +18,10 @@ void vs_kernel_tanh_backward(float *d, const float *y, size_t count);
 void vs_kernel_dot(const float *x, size_t stride, size_t rows, size_t width, const float *weight, float bias,
                    float *out, size_t out_stride);
 
-// Backward of one group of outputs (weight [outputs][width]) in one pass over the rows: d = (dout weight)(1 - x^2),
-// dweight += dout^T x, dbias += sum of dout.
+// Backward of one group of outputs (weight [outputs][width]) in one pass over the rows: d = (d_out weight)(1 - x^2),
+// d_weight += d_out^T x, d_bias += sum of d_out.
 void vs_kernel_head_backward(const float *x, float *d, size_t stride, size_t rows, size_t width, const float *weight,
-                             const float *dout, size_t outputs, float *dweight, float *dbias);
+                             const float *d_out, size_t outputs, float *d_weight, float *d_bias);
 
 // out[column] += sum over rows.
 void vs_kernel_column_sums(const float *x, size_t rows, size_t columns, float *out);
@@ -38,7 +38,7 @@ double vs_kernel_square_sum(const float *a, size_t count);
 typedef struct vs_adam_step {
   float rate, beta1, beta2, epsilon, scale;
 } vs_adam_step;
-void vs_kernel_adam(float *parameter, const float *gradient, float *mean, float *square, size_t count,
+void vs_kernel_adam(float *parameter, const float *gradient, float *m, float *v, size_t count,
                     const vs_adam_step *step);
 
 #endif

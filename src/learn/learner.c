@@ -11,10 +11,10 @@
 // in the second-level cache when the next step reads it.
 enum { A = VS_ACTION_SIZE, BLOCK = 192 };
 
-// What one piece of a minibatch needs: a block of its rows gathered, activations, its part of the gradient.
+// What one microbatch needs: a block of its rows gathered, activations, its part of the gradient.
 struct vs_learner_part {
   int capacity; // rows of a block
-  float *x, *log_u, *log_1_u, *old_log_p, *advantage, *target, *old_value, *draw, *dvalue;
+  float *x, *log_u, *log_1_u, *old_log_p, *advantage, *target, *old_value;
   float *block; // owns the arrays above
   vs_net_work work;
   float *gradient; // [net.size]
@@ -25,19 +25,17 @@ static vs_status part_init(struct vs_learner_part *part, const vs_net *net, cons
                            vs_error *err) {
   size_t n = (size_t)rows, inputs = (size_t)net->shape.inputs;
   part->capacity = rows;
-  part->block = aligned_alloc(64, (n * (inputs + 5 * A + 5) + 15) / 16 * 16 * sizeof(float));
+  part->block = aligned_alloc(64, (n * (inputs + 2 * A + 4) + 15) / 16 * 16 * sizeof(float));
   part->gradient = aligned_alloc(64, (net->size + 15) / 16 * 16 * sizeof(float));
   if (!part->block || !part->gradient) return vs_fail(err, VS_FAIL, "out of memory for a minibatch of %d rows", rows);
   float *at = part->block;
   part->x = at, at += n * inputs;
-  part->draw = at, at += n * 2 * A;
   part->log_u = at, at += n * A;
   part->log_1_u = at, at += n * A;
   part->old_log_p = at, at += n;
   part->advantage = at, at += n;
   part->target = at, at += n;
-  part->old_value = at, at += n;
-  part->dvalue = at;
+  part->old_value = at;
   return vs_net_work_init(&part->work, net, rows, true, bf16, err);
 }
 
@@ -60,29 +58,29 @@ vs_status vs_learner_init(vs_learner *learner, const vs_learner_def *def, vs_poo
   size_t size = (learner->net.size + 15) / 16 * 16;
   learner->parameters = aligned_alloc(64, 3 * size * sizeof(float));
   learner->gradient = aligned_alloc(64, size * sizeof(float));
-  learner->part = calloc((size_t)def->pieces, sizeof *learner->part);
+  learner->part = calloc((size_t)def->microbatches, sizeof *learner->part);
   bool bf16 = can_bf16 && def->precision != VS_PRECISION_FP32;
   if (bf16) learner->bf16 = aligned_alloc(64, (size + 31) / 32 * 32 * sizeof(uint16_t));
   if (!learner->parameters || !learner->gradient || !learner->part || (bf16 && !learner->bf16))
     s = vs_fail(err, VS_FAIL, "out of memory for %zu parameters", size);
-  int rows = (def->minibatch + def->pieces - 1) / def->pieces;
+  int rows = (def->minibatch + def->microbatches - 1) / def->microbatches;
   int block = def->block ? def->block : BLOCK;
   if (rows > block) rows = block;
-  for (int i = 0; s == VS_OK && i < def->pieces; i++)
+  for (int i = 0; s == VS_OK && i < def->microbatches; i++)
     s = part_init(&learner->part[i], &learner->net, learner->bf16, rows, err);
   if (s == VS_OK) {
     memset(learner->parameters, 0, 3 * size * sizeof(float));
-    learner->mean = learner->parameters + size;
-    learner->square = learner->mean + size;
+    learner->m = learner->parameters + size;
+    learner->v = learner->m + size;
     vs_rng rng = vs_rng_make(seed, 0);
-    s = vs_net_randomise(&learner->net, def->first_shape, &rng, learner->parameters, err);
+    s = vs_net_randomise(&learner->net, def->initial_concentration, &rng, learner->parameters, err);
   }
   if (s != VS_OK) vs_learner_free(learner);
   return s;
 }
 
 void vs_learner_free(vs_learner *learner) {
-  for (int i = 0; learner->part && i < learner->def.pieces; i++) part_free(&learner->part[i]);
+  for (int i = 0; learner->part && i < learner->def.microbatches; i++) part_free(&learner->part[i]);
   free(learner->part);
   free(learner->order);
   free(learner->gradient);
@@ -95,23 +93,23 @@ void vs_learner_free(vs_learner *learner) {
 typedef struct job {
   vs_learner *learner;
   const vs_ppo_batch *batch;
-  const int *rows;
-  int count;
-  double total_rows, mean, scale; // advantage is normalised as (a - mean) * scale
+  const vs_minibatch *minibatch;
 } job;
 
-static void gather(const job *j, struct vs_learner_part *part, const int *rows, int count) {
+// Rows from .. from + count of the minibatch.
+static void gather(const job *j, struct vs_learner_part *part, int from, int count) {
   const vs_ppo_batch *b = j->batch;
+  const vs_minibatch *minibatch = j->minibatch;
   size_t inputs = (size_t)j->learner->net.shape.inputs;
   for (int i = 0; i < count; i++) {
-    size_t r = (size_t)rows[i], to = (size_t)i;
+    size_t r = (size_t)minibatch->row[from + i], to = (size_t)i;
     memcpy(part->x + to * inputs, b->x + r * inputs, inputs * sizeof *b->x);
     for (size_t k = 0; k < A; k++) {
       part->log_u[to * A + k] = b->log_u[r * A + k];
       part->log_1_u[to * A + k] = b->log_1_u[r * A + k];
     }
     part->old_log_p[i] = b->old_log_p[r];
-    part->advantage[i] = (float)((b->advantage[r] - j->mean) * j->scale);
+    part->advantage[i] = (float)((b->advantage[r] - minibatch->advantage_mean) * minibatch->advantage_scale);
     part->target[i] = b->target[r];
     part->old_value[i] = b->old_value[r];
   }
@@ -122,24 +120,23 @@ static vs_ppo_batch gathered(const struct vs_learner_part *part, int count) {
                         part->old_log_p, part->advantage, part->target, part->old_value};
 }
 
-static void gradient_piece(void *context, int piece, int thread) {
+static void gradient_microbatch(void *context, int index, int thread) {
   (void)thread;
   const job *j = context;
   vs_learner *l = j->learner;
-  struct vs_learner_part *part = &l->part[piece];
-  int from = (int)((long long)j->count * piece / l->def.pieces);
-  int to = (int)((long long)j->count * (piece + 1) / l->def.pieces);
+  struct vs_learner_part *part = &l->part[index];
+  int from = (int)((long long)j->minibatch->rows * index / l->def.microbatches);
+  int to = (int)((long long)j->minibatch->rows * (index + 1) / l->def.microbatches);
+  const vs_ppo_outputs outputs = {part->work.raw, part->work.value, part->work.d_raw, part->work.d_value};
   part->stats = (vs_ppo_stats){0};
   memset(part->gradient, 0, l->net.size * sizeof(float));
   for (int at = from; at < to; at += part->capacity) {
     int count = to - at < part->capacity ? to - at : part->capacity;
-    gather(j, part, j->rows + at, count);
+    gather(j, part, at, count);
     const vs_ppo_batch batch = gathered(part, count);
     vs_net_forward(&l->net, &l->blas, l->parameters, part->x, count, &part->work);
-    vs_ppo_loss(&l->def.ppo, &batch, part->work.raw, part->work.value, j->total_rows, part->draw, part->dvalue,
-                &part->stats);
-    vs_net_backward(&l->net, &l->blas, l->parameters, part->x, count, part->draw, part->dvalue, &part->work,
-                    part->gradient);
+    vs_ppo_loss(&l->def.ppo, &batch, &outputs, j->minibatch->total_rows, &part->stats);
+    vs_net_backward(&l->net, &l->blas, l->parameters, part->x, count, &part->work, part->gradient);
   }
 }
 
@@ -157,7 +154,7 @@ static void sum_range(void *context, int range, int thread) {
   size_t from, count;
   range_of(l, range, &from, &count);
   memcpy(l->gradient + from, l->part[0].gradient + from, count * sizeof(float));
-  for (int i = 1; i < l->def.pieces; i++) vs_kernel_add(l->gradient + from, l->part[i].gradient + from, count);
+  for (int i = 1; i < l->def.microbatches; i++) vs_kernel_add(l->gradient + from, l->part[i].gradient + from, count);
 }
 
 // The backward pass multiplies by the weights of the second layer and up.
@@ -178,17 +175,18 @@ static void add_stats(vs_ppo_stats *sum, const vs_ppo_stats *part) {
   sum->clipped += part->clipped;
 }
 
-// The same by another library, in pieces as large as its workspace holds.
+// The same by another library, in parts as large as its workspace holds.
 static vs_status engine_gradient(const job *j, vs_ppo_stats *stats, vs_error *err) {
   vs_learner *l = j->learner;
   memset(l->gradient, 0, l->net.size * sizeof(float));
   vs_status s = VS_OK;
-  for (int from = 0; s == VS_OK && from < j->count; from += l->part[0].capacity) {
-    int count = j->count - from < l->part[0].capacity ? j->count - from : l->part[0].capacity;
-    gather(j, &l->part[0], j->rows + from, count);
+  const int rows = j->minibatch->rows, capacity = l->part[0].capacity;
+  for (int from = 0; s == VS_OK && from < rows; from += capacity) {
+    int count = rows - from < capacity ? rows - from : capacity;
+    gather(j, &l->part[0], from, count);
     const vs_ppo_batch batch = gathered(&l->part[0], count);
     vs_signals_hold(); // its products may be oneDNN's
-    s = l->engine->gradient(l->engine->self, &l->net, &l->def.ppo, l->parameters, &batch, j->total_rows,
+    s = l->engine->gradient(l->engine->self, &l->net, &l->def.ppo, l->parameters, &batch, j->minibatch->total_rows,
                             l->part[0].gradient, stats, err);
     vs_signals_release();
     vs_kernel_add(l->gradient, l->part[0].gradient, l->net.size);
@@ -196,17 +194,16 @@ static vs_status engine_gradient(const job *j, vs_ppo_stats *stats, vs_error *er
   return s;
 }
 
-vs_status vs_learner_gradient(vs_learner *learner, const vs_ppo_batch *batch, const int *rows, int count,
-                              double total_rows, double advantage_mean, double advantage_scale, vs_ppo_stats *stats,
-                              vs_error *err) {
-  job j = {learner, batch, rows, count, total_rows, advantage_mean, advantage_scale};
+vs_status vs_learner_gradient(vs_learner *learner, const vs_ppo_batch *batch, const vs_minibatch *minibatch,
+                              vs_ppo_stats *stats, vs_error *err) {
+  job j = {learner, batch, minibatch};
   if (learner->engine) {
     vs_status s = engine_gradient(&j, stats, err);
     if (s != VS_OK) return s;
   } else {
     if (learner->bf16) vs_pool_run(learner->pool, RANGES, round_range, learner);
-    vs_pool_run(learner->pool, learner->def.pieces, gradient_piece, &j);
-    for (int i = 0; i < learner->def.pieces; i++) add_stats(stats, &learner->part[i].stats);
+    vs_pool_run(learner->pool, learner->def.microbatches, gradient_microbatch, &j);
+    for (int i = 0; i < learner->def.microbatches; i++) add_stats(stats, &learner->part[i].stats);
     vs_pool_run(learner->pool, RANGES, sum_range, learner);
   }
   const vs_group *g = learner->group;
@@ -233,7 +230,7 @@ static void adam_range(void *context, int range, int thread) {
   vs_learner *l = j->learner;
   size_t from, count;
   range_of(l, range, &from, &count);
-  vs_kernel_adam(l->parameters + from, l->gradient + from, l->mean + from, l->square + from, count, &j->step);
+  vs_kernel_adam(l->parameters + from, l->gradient + from, l->m + from, l->v + from, count, &j->step);
 }
 
 double vs_learner_step(vs_learner *learner) {
@@ -255,11 +252,10 @@ double vs_learner_step(vs_learner *learner) {
 }
 
 // Mean and 1/deviation of the advantages of a minibatch, over all ranks.
-static vs_status normalise(const vs_learner *l, const vs_ppo_batch *batch, const int *rows, int count, double *total,
-                           double *mean, double *scale, vs_error *err) {
-  double sums[3] = {count, 0.0, 0.0};
-  for (int i = 0; i < count; i++) {
-    double a = batch->advantage[rows[i]];
+static vs_status normalise(const vs_learner *l, const vs_ppo_batch *batch, vs_minibatch *minibatch, vs_error *err) {
+  double sums[3] = {minibatch->rows, 0.0, 0.0};
+  for (int i = 0; i < minibatch->rows; i++) {
+    double a = batch->advantage[minibatch->row[i]];
     sums[1] += a;
     sums[2] += a * a;
   }
@@ -267,9 +263,10 @@ static vs_status normalise(const vs_learner *l, const vs_ppo_batch *batch, const
     vs_status s = l->group->sum_doubles(l->group->self, sums, 3, err);
     if (s != VS_OK) return s;
   }
-  *total = sums[0];
-  *mean = sums[1] / sums[0];
-  *scale = 1.0 / (sqrt(fmax(0.0, sums[2] / sums[0] - *mean * *mean)) + 1e-8);
+  double mean = sums[1] / sums[0];
+  minibatch->total_rows = sums[0];
+  minibatch->advantage_mean = mean;
+  minibatch->advantage_scale = 1.0 / (sqrt(fmax(0.0, sums[2] / sums[0] - mean * mean)) + 1e-8);
   return VS_OK;
 }
 
@@ -300,10 +297,9 @@ static vs_status epoch(vs_learner *l, const vs_ppo_batch *batch, vs_rng *rng, vs
   vs_status s = shuffle(l, (size_t)all, rng, err);
   for (int from = 0; s == VS_OK && from < all; from += l->def.minibatch) {
     int count = all - from < l->def.minibatch ? all - from : l->def.minibatch;
-    count = own_rows(l, l->order + from, count, batch->rows);
-    double total, mean, scale;
-    s = normalise(l, batch, l->order + from, count, &total, &mean, &scale, err);
-    if (s == VS_OK) s = vs_learner_gradient(l, batch, l->order + from, count, total, mean, scale, &stats->last, err);
+    vs_minibatch minibatch = {l->order + from, own_rows(l, l->order + from, count, batch->rows), 0.0, 0.0, 1.0};
+    s = normalise(l, batch, &minibatch, err);
+    if (s == VS_OK) s = vs_learner_gradient(l, batch, &minibatch, &stats->last, err);
     if (s == VS_OK) stats->gradient_norm += vs_learner_step(l);
     minibatches++;
   }

@@ -66,7 +66,8 @@ static void randomise(float *weight, int inputs, int outputs, size_t in_stride, 
     }
 }
 
-vs_status vs_net_randomise(const vs_net *net, double first_shape, vs_rng *rng, float *parameters, vs_error *err) {
+vs_status vs_net_randomise(const vs_net *net, double initial_concentration, vs_rng *rng, float *parameters,
+                           vs_error *err) {
   const vs_net_shape *s = &net->shape;
   double *scratch = malloc(net->size * sizeof *scratch);
   if (!scratch) return vs_fail(err, VS_FAIL, "out of memory for %zu parameters", net->size);
@@ -82,9 +83,9 @@ vs_status vs_net_randomise(const vs_net *net, double first_shape, vs_rng *rng, f
               n == VS_ACTOR ? 0.01 : 1.0, scratch, rng);
   }
   free(scratch);
-  // 1 + softplus(b) = first_shape.
+  // 1 + softplus(b) = initial_concentration.
   float *bias = parameters + net->head_bias[VS_ACTOR];
-  for (int i = 0; i < 2 * s->actions; i++) bias[i] = (float)log(expm1(first_shape - 1.0));
+  for (int i = 0; i < 2 * s->actions; i++) bias[i] = (float)log(expm1(initial_concentration - 1.0));
   return VS_OK;
 }
 
@@ -132,6 +133,9 @@ static void lay_out(vs_net_work *work, const vs_net *net, bool backward, arena *
   if (work->bf16) work->bf16_x = room(a, rows * (size_t)s->inputs, sizeof(uint16_t));
   work->raw = room(a, rows * 2 * (size_t)s->actions, sizeof(float));
   work->value = room(a, rows, sizeof(float));
+  if (!backward) return;
+  work->d_raw = room(a, rows * 2 * (size_t)s->actions, sizeof(float));
+  work->d_value = room(a, rows, sizeof(float));
 }
 
 vs_status vs_net_work_init(vs_net_work *work, const vs_net *net, int rows, bool backward, const uint16_t *bf16,
@@ -181,14 +185,14 @@ void vs_net_forward(const vs_net *net, const vs_blas *blas, const float *paramet
 }
 
 // Gradients of the heads, and of the sums before the last hidden layer's tanh.
-static void backward_heads(const vs_net *net, const float *parameters, int rows, const float *draw, const float *dvalue,
-                           vs_net_work *work, float *gradient) {
+static void backward_heads(const vs_net *net, const float *parameters, int rows, vs_net_work *work, float *gradient) {
   const int top = net->shape.layers - 1, last = net->shape.width[top];
   for (int n = 0; n < net->nets; n++) {
     size_t outputs = (size_t)vs_net_outputs(net, n);
     vs_kernel_head_backward(work->hidden[top] + n * last, work->gradient[top] + n * last, (size_t)(net->nets * last),
-                            (size_t)rows, (size_t)last, parameters + net->head_weight[n], n == VS_ACTOR ? draw : dvalue,
-                            outputs, gradient + net->head_weight[n], gradient + net->head_bias[n]);
+                            (size_t)rows, (size_t)last, parameters + net->head_weight[n],
+                            n == VS_ACTOR ? work->d_raw : work->d_value, outputs, gradient + net->head_weight[n],
+                            gradient + net->head_bias[n]);
   }
 }
 
@@ -219,10 +223,10 @@ static void round_inputs(const vs_net *net, const float *x, int rows, vs_net_wor
 }
 
 void vs_net_backward(const vs_net *net, const vs_blas *blas, const float *parameters, const float *x, int rows,
-                     const float *draw, const float *dvalue, vs_net_work *work, float *gradient) {
+                     vs_net_work *work, float *gradient) {
   const vs_net_shape *s = &net->shape;
   const int nets = net->nets;
-  backward_heads(net, parameters, rows, draw, dvalue, work, gradient);
+  backward_heads(net, parameters, rows, work, gradient);
   if (work->bf16) round_inputs(net, x, rows, work);
   for (int l = s->layers - 1; l >= 0; l--) {
     const int width = s->width[l], all = nets * width;

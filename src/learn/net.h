@@ -41,8 +41,9 @@ static inline int vs_net_outputs(const vs_net *net, int which) {
 }
 
 // Orthogonal weights of gain sqrt 2 (heads: 0.01 and 1; Saxe et al. 2014), zero biases but the actor's last, which
-// makes alpha = beta = first_shape (> 1) where the weights say nothing.
-vs_status vs_net_randomise(const vs_net *net, double first_shape, vs_rng *rng, float *parameters, vs_error *err);
+// makes alpha = beta = initial_concentration (> 1) where the weights say nothing.
+vs_status vs_net_randomise(const vs_net *net, double initial_concentration, vs_rng *rng, float *parameters,
+                           vs_error *err);
 
 // The actor's part of parameters of `net` as parameters of `actor` (made with the same shape, critic = false).
 void vs_net_extract_actor(const vs_net *net, const float *parameters, const vs_net *actor, float *out);
@@ -56,8 +57,8 @@ typedef struct vs_net_work {
   uint16_t *bf16_x, *bf16_hidden[VS_NET_MAX_LAYERS], *bf16_gradient[VS_NET_MAX_LAYERS]; // of backward with bf16
   float *hidden[VS_NET_MAX_LAYERS];                                                     // [rows][N * width]
   float *gradient[VS_NET_MAX_LAYERS]; // the same; NULL where made without backward
-  float *raw;                         // [rows][2 * actions]
-  float *value;                       // [rows]; zeros without a critic
+  float *raw, *value;                 // [rows][2 * actions], [rows]: the outputs; values are zeros without a critic
+  float *d_raw, *d_value;             // the same: a loss's derivatives by them; NULL where made without backward
   void *block;                        // owns all of the above but bf16
 } vs_net_work;
 
@@ -69,9 +70,9 @@ void vs_net_work_free(vs_net_work *work);
 void vs_net_forward(const vs_net *net, const vs_blas *blas, const float *parameters, const float *x, int rows,
                     vs_net_work *work);
 
-// After vs_net_forward on the same x: the gradient of a loss by draw [rows][2 * actions] and dvalue [rows] (its
-// derivatives by raw and value; dvalue NULL without a critic), added to gradient[net->size].
+// After vs_net_forward on the same x, and work->d_raw and work->d_value filled in by the caller: the gradient of that loss
+// is added to gradient[net->size].
 void vs_net_backward(const vs_net *net, const vs_blas *blas, const float *parameters, const float *x, int rows,
-                     const float *draw, const float *dvalue, vs_net_work *work, float *gradient);
+                     vs_net_work *work, float *gradient);
 
 #endif

@@ -22,7 +22,7 @@ static double clipped_surrogate(const vs_ppo_def *def, const vs_ppo_batch *batch
 
 // The policy's part of one row: writes the derivatives by the 2A raw outputs.
 static void policy_row(const vs_ppo_def *def, const vs_ppo_batch *batch, int row, const float *raw, double scale,
-                       float *draw, vs_ppo_stats *stats) {
+                       float *d_raw, vs_ppo_stats *stats) {
   vs_beta_terms terms[A];
   double log_p = 0.0;
   for (int k = 0; k < A; k++) {
@@ -41,8 +41,8 @@ static void policy_row(const vs_ppo_def *def, const vs_ppo_batch *batch, int row
   for (int k = 0; k < A; k++) {
     double by_alpha = by_log_p * terms[k].log_p_alpha - def->entropy * terms[k].entropy_alpha;
     double by_beta = by_log_p * terms[k].log_p_beta - def->entropy * terms[k].entropy_beta;
-    draw[k] = (float)(scale * by_alpha * vs_sigmoid(raw[k]));
-    draw[A + k] = (float)(scale * by_beta * vs_sigmoid(raw[A + k]));
+    d_raw[k] = (float)(scale * by_alpha * vs_sigmoid(raw[k]));
+    d_raw[A + k] = (float)(scale * by_beta * vs_sigmoid(raw[A + k]));
   }
 }
 
@@ -58,14 +58,14 @@ static double value_row(const vs_ppo_def *def, double value, double target, doub
   return loss_clipped;
 }
 
-void vs_ppo_loss(const vs_ppo_def *def, const vs_ppo_batch *batch, const float *raw, const float *value,
-                 double total_rows, float *draw, float *dvalue, vs_ppo_stats *stats) {
+void vs_ppo_loss(const vs_ppo_def *def, const vs_ppo_batch *batch, const vs_ppo_outputs *outputs, double total_rows,
+                 vs_ppo_stats *stats) {
   double scale = 1.0 / total_rows;
   for (int row = 0; row < batch->rows; row++) {
-    policy_row(def, batch, row, raw + row * 2 * A, scale, draw + row * 2 * A, stats);
+    policy_row(def, batch, row, outputs->raw + row * 2 * A, scale, outputs->d_raw + row * 2 * A, stats);
     double by_value;
-    stats->value_loss += value_row(def, value[row], batch->target[row], batch->old_value[row], &by_value);
-    dvalue[row] = (float)(scale * def->value_weight * by_value);
+    stats->value_loss += value_row(def, outputs->value[row], batch->target[row], batch->old_value[row], &by_value);
+    outputs->d_value[row] = (float)(scale * def->value_weight * by_value);
   }
   stats->rows += batch->rows;
 }

@@ -29,10 +29,16 @@ typedef struct vs_ppo_stats {
   double rows, policy_loss, value_loss, entropy, kl, clipped;
 } vs_ppo_stats;
 
-// Loss = mean over total_rows of: -min(ratio A, clip(ratio) A) (or -log p) - entropy H + value_weight 0.5 max(...)^2. Writes draw
-// [rows][2A] and dvalue [rows], the derivatives of the part that these rows contribute, and adds to stats.
-void vs_ppo_loss(const vs_ppo_def *def, const vs_ppo_batch *batch, const float *raw, const float *value,
-                 double total_rows, float *draw, float *dvalue, vs_ppo_stats *stats);
+// The networks' outputs on the rows of a batch, and where the derivatives of the loss by them go. Borrowed.
+typedef struct vs_ppo_outputs {
+  const float *raw, *value; // [rows][2A], [rows]
+  float *d_raw, *d_value;   // the same
+} vs_ppo_outputs;
+
+// Loss = mean over total_rows of: -min(ratio A, clip(ratio) A) (or -log p) - entropy H + value_weight 0.5 max(...)^2. Writes
+// d_raw and d_value, the derivatives of the part that these rows contribute, and adds to stats.
+void vs_ppo_loss(const vs_ppo_def *def, const vs_ppo_batch *batch, const vs_ppo_outputs *outputs, double total_rows,
+                 vs_ppo_stats *stats);
 
 // The loss itself from stats.
 double vs_ppo_total(const vs_ppo_def *def, const vs_ppo_stats *stats);

@@ -37,8 +37,8 @@ static bool make_sample(const vs_learner_def *def, sample *s) {
 static vs_status time_once(vs_learner *learner, const sample *s, double *best_s, vs_error *err) {
   vs_ppo_stats stats = {0};
   int64_t start_us = vs_clock_monotonic_us();
-  vs_status status =
-      vs_learner_gradient(learner, &s->batch, s->rows, s->batch.rows, s->batch.rows, 0.0, 1.0, &stats, err);
+  const vs_minibatch minibatch = {s->rows, s->batch.rows, s->batch.rows, 0.0, 1.0};
+  vs_status status = vs_learner_gradient(learner, &s->batch, &minibatch, &stats, err);
   *best_s = fmin(*best_s, 1e-6 * (double)(vs_clock_monotonic_us() - start_us));
   return status;
 }

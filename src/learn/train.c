@@ -33,10 +33,10 @@ static vs_learner_def learner_def(const vs_train_def *def, const vs_net_shape *s
                           .adam_beta2 = 0.999,
                           .adam_epsilon = def->adam_epsilon,
                           .max_gradient_norm = def->max_gradient_norm,
-                          .first_shape = def->first_shape,
+                          .initial_concentration = def->first_shape,
                           .epochs = def->epochs,
                           .minibatch = def->minibatch,
-                          .pieces = def->pieces};
+                          .microbatches = def->pieces};
 }
 
 // precision = auto becomes the faster one, and the run's setting: a run that is resumed computes as it began. Ranks that

@@ -48,15 +48,15 @@ vs_status picture_write(const char *path, const uint8_t *bgr, int stride, int wi
   return vs_fail(err, VS_FAIL, "%s: %s", path, e.what());
 }
 
-vs_status jpeg_encode(const uint8_t *bgr, int stride, int width, int height, int quality, int shrink, uint8_t *out,
-                      size_t capacity, size_t *size, vs_error *err) try {
-  cv::Mat image = view(bgr, stride, width, height), small;
-  if (shrink > 1) {
-    cv::resize(image, small, cv::Size(width / shrink, height / shrink), 0, 0, cv::INTER_AREA);
-    image = small;
+vs_status jpeg_encode(const vs_image *image, const vs_jpeg_def *def, uint8_t *out, size_t capacity, size_t *size,
+                      vs_error *err) try {
+  cv::Mat picture = view(image->bgr, image->stride, image->width, image->height), small;
+  if (def->shrink > 1) {
+    cv::resize(picture, small, cv::Size(image->width / def->shrink, image->height / def->shrink), 0, 0, cv::INTER_AREA);
+    picture = small;
   }
   std::vector<uint8_t> bytes;
-  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
+  cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, def->quality});
   if (bytes.size() > capacity)
     return vs_fail(err, VS_FAIL, "a JPEG of %zu bytes does not fit %zu", bytes.size(), capacity);
   std::memcpy(out, bytes.data(), bytes.size());

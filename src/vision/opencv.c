@@ -23,9 +23,9 @@ vs_status vs_image_save(const char *path, const uint8_t *bgr, int stride, int wi
   return s == VS_OK ? cv->picture_write(path, bgr, stride, width, height, err) : s;
 }
 
-vs_status vs_image_jpeg(const uint8_t *bgr, int stride, int width, int height, int quality, int shrink, uint8_t *out,
-                        size_t capacity, size_t *size, vs_error *err) {
+vs_status vs_image_jpeg(const vs_image *image, const vs_jpeg_def *def, uint8_t *out, size_t capacity, size_t *size,
+                        vs_error *err) {
   const vs_opencv *cv = NULL;
   vs_status s = vs_opencv_load(&cv, err);
-  return s == VS_OK ? cv->jpeg_encode(bgr, stride, width, height, quality, shrink, out, capacity, size, err) : s;
+  return s == VS_OK ? cv->jpeg_encode(image, def, out, capacity, size, err) : s;
 }

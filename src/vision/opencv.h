@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "vsss/image.h"
 #include "vsss/status.h"
 
 #ifdef __cplusplus
@@ -20,8 +21,8 @@ typedef struct vs_opencv {
   vs_status (*picture_read)(const char *path, uint8_t **bgr, int *width, int *height, vs_error *err);
   void (*release)(uint8_t *bgr);
   vs_status (*picture_write)(const char *path, const uint8_t *bgr, int stride, int width, int height, vs_error *err);
-  vs_status (*jpeg_encode)(const uint8_t *bgr, int stride, int width, int height, int quality, int shrink, uint8_t *out,
-                           size_t capacity, size_t *size, vs_error *err);
+  vs_status (*jpeg_encode)(const vs_image *image, const vs_jpeg_def *def, uint8_t *out, size_t capacity, size_t *size,
+                           vs_error *err); // vs_image_jpeg
   // A JPEG that must be width x height -> bgr, packed rows.
   vs_status (*jpeg_decode)(const uint8_t *jpeg, size_t size, uint8_t *bgr, int width, int height, vs_error *err);
 

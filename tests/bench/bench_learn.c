@@ -65,10 +65,10 @@ static vs_status bench_learner(vs_precision precision, const char *name, vs_erro
                               .adam_beta2 = 0.999,
                               .adam_epsilon = 1e-5,
                               .max_gradient_norm = 0.5,
-                              .first_shape = 4.0,
+                              .initial_concentration = 4.0,
                               .epochs = 5,
                               .minibatch = 4280,
-                              .pieces = 4,
+                              .microbatches = 4,
                               .precision = precision};
   vs_pool *pool;
   vs_learner learner;
@@ -152,6 +152,7 @@ static vs_status bench_training(vs_error *err) {
 
 int main(void) {
   vs_error err = {0};
+  vs_learn_environment();
   vs_status s = bench_training(&err);
   if (s == VS_OK) s = bench_learner(VS_PRECISION_AUTO, "learner", &err); // bf16 where the processor has it
   if (s == VS_OK) s = bench_learner(VS_PRECISION_FP32, "learner_fp32", &err);

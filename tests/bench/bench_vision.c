@@ -85,7 +85,7 @@ static int measure_mjpg(void) {
   vs_error err;
   size_t size;
   if (vs_detector_new(&def, &detector, &err) != VS_OK || vs_jpeg_new(&decoder, &err) != VS_OK ||
-      vs_image_jpeg(s.bgr, 3 * W, W, H, 85, 1, jpeg, sizeof jpeg, &size, &err) != VS_OK)
+      vs_image_jpeg(&(vs_image){s.bgr, W, H, 3 * W}, &(vs_jpeg_def){85, 1}, jpeg, sizeof jpeg, &size, &err) != VS_OK)
     return fprintf(stderr, "bench_vision: %s\n", err.text), 1;
   frame.bgr = bgr, frame.grey = grey;
   for (int k = 0; k < TIMES; k++) {

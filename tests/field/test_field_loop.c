@@ -196,7 +196,8 @@ static void every_frame_is_told_and_a_referee_halts_play(void **state) {
   for (int i = 0; i < 100; i++) vs_bus_handle(outside, 5, NULL, NULL);
   uint8_t jpeg[2048];
   size_t size;
-  if (vs_image_jpeg(picture, 3 * W, 8, 8, 80, 1, jpeg, sizeof jpeg, &size, &err) == VS_OK) { // OpenCV is there
+  if (vs_image_jpeg(&(vs_image){picture, 8, 8, 3 * W}, &(vs_jpeg_def){80, 1}, jpeg, sizeof jpeg, &size, &err) ==
+      VS_OK) { // OpenCV is there
     for (int i = 0; i < 300 && !heard[VS_CH_IMAGE]; i++) vs_bus_handle(outside, 20, NULL, NULL);
     assert_true(heard[VS_CH_IMAGE] >= 1);
   }

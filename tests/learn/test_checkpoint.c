@@ -50,8 +50,8 @@ static void updates(vs_train *train, int count) {
 static void assert_same(const vs_train *a, const vs_train *b) {
   size_t bytes = a->learner.net.size * sizeof(float);
   assert_memory_equal(a->learner.parameters, b->learner.parameters, bytes);
-  assert_memory_equal(a->learner.mean, b->learner.mean, bytes);
-  assert_memory_equal(a->learner.square, b->learner.square, bytes);
+  assert_memory_equal(a->learner.m, b->learner.m, bytes);
+  assert_memory_equal(a->learner.v, b->learner.v, bytes);
   assert_int_equal(a->transitions, b->transitions);
   assert_int_equal(a->league.next_id, b->league.next_id);
   assert_memory_equal(a->league.slot, b->league.slot, (size_t)a->league.slots * sizeof *a->league.slot);
@@ -251,7 +251,7 @@ static void the_last_releases_checkpoint_loads_and_trains_on(void **state) {
   assert_true(train->transitions > 10 * 1000 * 1000);
   assert_true(train->learner.steps > 10000); // of Adam: its m and v are those of a long run
   double largest = 0.0;
-  for (size_t i = 0; i < train->learner.net.size; i++) largest = fmax(largest, train->learner.square[i]);
+  for (size_t i = 0; i < train->learner.net.size; i++) largest = fmax(largest, train->learner.v[i]);
   assert_true(largest > 0.0);
   long long before = train->transitions;
   updates(train, 1);
@@ -271,7 +271,7 @@ static void a_slim_checkpoint_continues_the_networks_with_new_matches(void **sta
   assert_ok(vs_train_load(again, file, NULL, err));
   size_t bytes = train->learner.net.size * sizeof(float);
   assert_memory_equal(again->learner.parameters, train->learner.parameters, bytes);
-  assert_memory_equal(again->learner.square, train->learner.square, bytes);
+  assert_memory_equal(again->learner.v, train->learner.v, bytes);
   assert_int_equal(again->transitions, train->transitions);
   // Its frozen opponents are the policy as saved, not the untrained one.
   vs_net_extract_actor(&train->learner.net, train->learner.parameters, &train->rollout.actor, train->actor);

@@ -24,36 +24,36 @@ static void tanh_is_within_3e7_of_the_libm_everywhere(void **state) {
 }
 
 // Two rows of three inputs inside rows of four floats, two outputs, worked out by hand:
-//   x = (0.5, 0, -0.5), (1, 0.5, 0); weight = (1, 2, 3), (4, 5, 6); dout = (1, 0), (2, -1)
-//   dout weight: row 0 (1, 2, 3); row 1 (2-4, 4-5, 6-6) = (-2, -1, 0)
+//   x = (0.5, 0, -0.5), (1, 0.5, 0); weight = (1, 2, 3), (4, 5, 6); d_out = (1, 0), (2, -1)
+//   d_out weight: row 0 (1, 2, 3); row 1 (2-4, 4-5, 6-6) = (-2, -1, 0)
 //   times 1 - x^2: row 0 (0.75, 2, 2.25); row 1 (0, -0.75, 0)
-//   dweight 0: 1*x0 + 2*x1 = (2.5, 1, -0.5); dweight 1: -x1 = (-1, -0.5, 0); dbias (3, -1)
+//   d_weight 0: 1*x0 + 2*x1 = (2.5, 1, -0.5); d_weight 1: -x1 = (-1, -0.5, 0); d_bias (3, -1)
 static void the_backward_of_a_head_agrees_with_hand_values(void **state) {
   (void)state;
-  const float x[8] = {0.5f, 0, -0.5f, 7, 1, 0.5f, 0, 7}, weight[6] = {1, 2, 3, 4, 5, 6}, dout[4] = {1, 0, 2, -1};
-  float d[8] = {9, 9, 9, 9, 9, 9, 9, 9}, dweight[6] = {0}, dbias[2] = {0};
-  vs_kernel_head_backward(x, d, 4, 2, 3, weight, dout, 2, dweight, dbias);
+  const float x[8] = {0.5f, 0, -0.5f, 7, 1, 0.5f, 0, 7}, weight[6] = {1, 2, 3, 4, 5, 6}, d_out[4] = {1, 0, 2, -1};
+  float d[8] = {9, 9, 9, 9, 9, 9, 9, 9}, d_weight[6] = {0}, d_bias[2] = {0};
+  vs_kernel_head_backward(x, d, 4, 2, 3, weight, d_out, 2, d_weight, d_bias);
   const double expected[8] = {0.75, 2, 2.25, 9, 0, -0.75, 0, 9}, expected_weight[6] = {2.5, 1, -0.5, -1, -0.5, 0};
   for (int i = 0; i < 8; i++) assert_near(d[i], expected[i], 1e-6);
-  for (int i = 0; i < 6; i++) assert_near(dweight[i], expected_weight[i], 1e-6);
-  assert_near(dbias[0], 3.0, 1e-6);
-  assert_near(dbias[1], -1.0, 1e-6);
+  for (int i = 0; i < 6; i++) assert_near(d_weight[i], expected_weight[i], 1e-6);
+  assert_near(d_bias[0], 3.0, 1e-6);
+  assert_near(d_bias[1], -1.0, 1e-6);
   float out[4];
   vs_kernel_dot(x, 4, 2, 3, weight, 0.25f, out, 2); // 0.5 - 1.5 + 0.25, 1 + 1 + 0.25
   assert_near(out[0], -0.75, 1e-6);
   assert_near(out[2], 2.25, 1e-6);
 }
 
-// Adam, first step from zero moments: mean = 0.1 g, square = 0.001 g^2; unbiased both give g and g^2, so the step is
+// Adam, first step from zero moments: m = 0.1 g, v = 0.001 g^2; unbiased both give g and g^2, so the step is
 // rate g/(|g| + epsilon). With g = 2 scaled by 0.5 (to 1), rate 0.1, epsilon 1: parameter 3 - 0.1 * 1/(1 + 1) = 2.95.
 static void adam_takes_its_first_step_as_the_paper_says(void **state) {
   (void)state;
-  float parameter = 3, gradient = 2, mean = 0, square = 0;
+  float parameter = 3, gradient = 2, m = 0, v = 0;
   double unbias = sqrt(1.0 - 0.999);
   const vs_adam_step step = {(float)(0.1 * unbias / (1.0 - 0.9)), 0.9f, 0.999f, (float)(1.0 * unbias), 0.5f};
-  vs_kernel_adam(&parameter, &gradient, &mean, &square, 1, &step);
-  assert_near(mean, 0.1, 1e-7);
-  assert_near(square, 0.001, 2e-8);
+  vs_kernel_adam(&parameter, &gradient, &m, &v, 1, &step);
+  assert_near(m, 0.1, 1e-7);
+  assert_near(v, 0.001, 2e-8);
   assert_near(parameter, 2.95, 1e-6);
 }
 

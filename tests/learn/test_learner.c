@@ -17,10 +17,10 @@ static vs_learner_def small_def(void) {
                           .adam_beta2 = 0.999,
                           .adam_epsilon = 1e-5,
                           .max_gradient_norm = 0.5,
-                          .first_shape = 2.0,
+                          .initial_concentration = 2.0,
                           .epochs = 3,
                           .minibatch = 60,
-                          .pieces = 4};
+                          .microbatches = 4};
 }
 
 typedef struct data {
@@ -86,13 +86,14 @@ static float *gradient_of(const vs_learner_def *def, const data *d, const float 
   vs_ppo_stats stats = {0};
   const vs_ppo_batch batch = batch_of(d, 0, ROWS);
   int rows[ROWS];
+  const vs_minibatch minibatch = {rows, ROWS, ROWS, 0.0, 1.0};
   for (int i = 0; i < ROWS; i++) rows[i] = i;
   assert_ok(vs_pool_new(2, &pool, err));
   assert_ok(vs_learner_init(&learner, def, pool, 9, err));
   // Once with its own parameters: nothing of them may be left in the second gradient.
-  assert_ok(vs_learner_gradient(&learner, &batch, rows, ROWS, ROWS, 0.0, 1.0, &stats, err));
+  assert_ok(vs_learner_gradient(&learner, &batch, &minibatch, &stats, err));
   memcpy(learner.parameters, parameters, learner.net.size * sizeof(float));
-  assert_ok(vs_learner_gradient(&learner, &batch, rows, ROWS, ROWS, 0.0, 1.0, &stats, err));
+  assert_ok(vs_learner_gradient(&learner, &batch, &minibatch, &stats, err));
   assert_near(stats.rows, 2.0 * ROWS, 0.0);
   float *out = malloc(learner.net.size * sizeof *out);
   memcpy(out, learner.gradient, learner.net.size * sizeof *out);
@@ -111,7 +112,7 @@ static double distance(const float *a, const float *b, size_t count) {
   return sqrt(off / length);
 }
 
-static void pieces_blocks_and_bfloat16_give_one_gradient(void **state) {
+static void microbatches_blocks_and_bfloat16_give_one_gradient(void **state) {
   (void)state;
   static data d;
   make_data(&d);
@@ -120,10 +121,10 @@ static void pieces_blocks_and_bfloat16_give_one_gradient(void **state) {
   vs_learner moved; // parameters that are no learner's first
   vs_learner_stats stats;
   updated(&def, 1, &d, &moved, &stats);
-  def.pieces = 1;
+  def.microbatches = 1;
   float *whole = gradient_of(&def, &d, moved.parameters);
-  def.pieces = 7; // of 34 or 35 rows
-  def.block = 8;  // the last of 2 or 3
+  def.microbatches = 7; // of 34 or 35 rows
+  def.block = 8;        // the last of 2 or 3
   float *parts = gradient_of(&def, &d, moved.parameters);
   assert_true(distance(whole, parts, moved.net.size) < 1e-5);
   if (vs_blas_has_bf16(&moved.blas)) {
@@ -285,7 +286,7 @@ static void a_gradient_that_is_not_finite_ends_the_update_with_an_error(void **s
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_number_of_threads_changes_no_bit),
-      cmocka_unit_test(pieces_blocks_and_bfloat16_give_one_gradient),
+      cmocka_unit_test(microbatches_blocks_and_bfloat16_give_one_gradient),
       cmocka_unit_test(updates_reduce_the_loss_of_policy_and_value),
       cmocka_unit_test(explained_variance_is_0_for_a_constant_and_1_for_the_truth),
       cmocka_unit_test(two_ranks_with_half_the_rows_each_make_the_update_of_one),

@@ -13,7 +13,7 @@ typedef struct fixture {
   vs_net net;
   vs_blas blas;
   vs_net_work work;
-  float *parameters, x[ROWS * INPUTS], draw[ROWS * 4], dvalue[ROWS];
+  float *parameters, x[ROWS * INPUTS], d_raw[ROWS * 4], d_value[ROWS];
 } fixture;
 
 static void set_up_with(fixture *f, const vs_blas *blas) {
@@ -24,8 +24,8 @@ static void set_up_with(fixture *f, const vs_blas *blas) {
   vs_rng rng = vs_rng_make(2, 0);
   for (size_t i = 0; i < f->net.size; i++) f->parameters[i] = (float)vs_rng_range(&rng, -0.8, 0.8);
   for (int i = 0; i < ROWS * INPUTS; i++) f->x[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
-  for (int i = 0; i < ROWS * 4; i++) f->draw[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
-  for (int i = 0; i < ROWS; i++) f->dvalue[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
+  for (int i = 0; i < ROWS * 4; i++) f->d_raw[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
+  for (int i = 0; i < ROWS; i++) f->d_value[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
 }
 
 static void set_up(fixture *f) {
@@ -94,14 +94,19 @@ static void the_forward_pass_agrees_with_a_plain_network(void **state) {
   }
 }
 
-// Loss = sum of draw * raw + dvalue * value, whose derivatives by the outputs are draw and dvalue.
+static void derivatives(const fixture *f, vs_net_work *work) {
+  memcpy(work->d_raw, f->d_raw, sizeof f->d_raw);
+  memcpy(work->d_value, f->d_value, sizeof f->d_value);
+}
+
+// Loss = sum of d_raw * raw + d_value * value, whose derivatives by the outputs are d_raw and d_value.
 static double loss(fixture *f) {
   double sum = 0.0;
   for (int r = 0; r < ROWS; r++) {
     double raw[4], value;
     plain(&f->net, f->parameters, f->x + r * INPUTS, raw, &value);
-    for (int o = 0; o < 4; o++) sum += f->draw[r * 4 + o] * raw[o];
-    sum += f->dvalue[r] * value;
+    for (int o = 0; o < 4; o++) sum += f->d_raw[r * 4 + o] * raw[o];
+    sum += f->d_value[r] * value;
   }
   return sum;
 }
@@ -112,7 +117,8 @@ static void check_every_gradient(const vs_blas *blas) {
   float *gradient = malloc(f.net.size * sizeof *gradient);
   for (size_t i = 0; i < f.net.size; i++) gradient[i] = 0.25f; // it is added to what is there
   vs_net_forward(&f.net, &f.blas, f.parameters, f.x, ROWS, &f.work);
-  vs_net_backward(&f.net, &f.blas, f.parameters, f.x, ROWS, f.draw, f.dvalue, &f.work, gradient);
+  derivatives(&f, &f.work);
+  vs_net_backward(&f.net, &f.blas, f.parameters, f.x, ROWS, &f.work, gradient);
   for (size_t i = 0; i < f.net.size; i++) {
     float kept = f.parameters[i], up = kept + 1e-3f, down = kept - 1e-3f;
     f.parameters[i] = up;
@@ -151,8 +157,10 @@ static void bfloat16_changes_no_output_and_the_gradient_by_less_than_a_percent(v
   vs_net_forward(&f.net, &f.blas, f.parameters, f.x, ROWS, &work);
   assert_memory_equal(work.raw, f.work.raw, ROWS * 4 * sizeof(float));
   assert_memory_equal(work.value, f.work.value, ROWS * sizeof(float));
-  vs_net_backward(&f.net, &f.blas, f.parameters, f.x, ROWS, f.draw, f.dvalue, &f.work, gradient);
-  vs_net_backward(&f.net, &f.blas, f.parameters, f.x, ROWS, f.draw, f.dvalue, &work, rounded);
+  derivatives(&f, &f.work);
+  vs_net_backward(&f.net, &f.blas, f.parameters, f.x, ROWS, &f.work, gradient);
+  derivatives(&f, &work);
+  vs_net_backward(&f.net, &f.blas, f.parameters, f.x, ROWS, &work, rounded);
   double off = 0.0, length = 0.0;
   for (size_t i = 0; i < f.net.size; i++) {
     off += pow((double)rounded[i] - gradient[i], 2.0);

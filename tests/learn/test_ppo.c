@@ -10,11 +10,12 @@ static const float uniform[4] = {LOW, LOW, LOW, LOW};
 static const float half[2] = {-0.69314718f, -0.69314718f}; // u = 1/2
 
 static vs_ppo_stats one_row(const vs_ppo_def *def, double old_log_p, double advantage, double target, double old_value,
-                            float value, float draw[4], float *dvalue) {
+                            float value, float d_raw[4], float *d_value) {
   float old = (float)old_log_p, a = (float)advantage, r = (float)target, v = (float)old_value;
   const vs_ppo_batch batch = {1, NULL, half, half, &old, &a, &r, &v};
   vs_ppo_stats stats = {0};
-  vs_ppo_loss(def, &batch, uniform, &value, 1.0, draw, dvalue, &stats);
+  const vs_ppo_outputs outputs = {uniform, &value, d_raw, d_value};
+  vs_ppo_loss(def, &batch, &outputs, 1.0, &stats);
   return stats;
 }
 
@@ -23,12 +24,12 @@ static vs_ppo_stats one_row(const vs_ppo_def *def, double old_log_p, double adva
 static void a_ratio_over_the_clip_limits_gains_but_not_losses(void **state) {
   (void)state;
   const vs_ppo_def def = {.clip = 0.2};
-  float draw[4], dvalue;
-  vs_ppo_stats s = one_row(&def, -0.5, 2.0, 0.0, 0.0, 0.0f, draw, &dvalue);
+  float d_raw[4], d_value;
+  vs_ppo_stats s = one_row(&def, -0.5, 2.0, 0.0, 0.0, 0.0f, d_raw, &d_value);
   assert_near(s.policy_loss, -2.4, 1e-6);
   assert_near(s.kl, 0.1487212707, 1e-6);
   assert_near(s.clipped, 1.0, 0.0);
-  s = one_row(&def, -0.5, -2.0, 0.0, 0.0, 0.0f, draw, &dvalue);
+  s = one_row(&def, -0.5, -2.0, 0.0, 0.0, 0.0f, d_raw, &d_value);
   assert_near(s.policy_loss, 3.2974425414, 1e-6);
 }
 
@@ -37,9 +38,9 @@ static void a_ratio_over_the_clip_limits_gains_but_not_losses(void **state) {
 static void a_ratio_under_the_clip_limits_losses_but_not_gains(void **state) {
   (void)state;
   const vs_ppo_def def = {.clip = 0.2};
-  float draw[4], dvalue;
-  assert_near(one_row(&def, 0.5, 2.0, 0.0, 0.0, 0.0f, draw, &dvalue).policy_loss, -1.2130613194, 1e-6);
-  assert_near(one_row(&def, 0.5, -2.0, 0.0, 0.0, 0.0f, draw, &dvalue).policy_loss, 1.6, 1e-6);
+  float d_raw[4], d_value;
+  assert_near(one_row(&def, 0.5, 2.0, 0.0, 0.0, 0.0f, d_raw, &d_value).policy_loss, -1.2130613194, 1e-6);
+  assert_near(one_row(&def, 0.5, -2.0, 0.0, 0.0, 0.0f, d_raw, &d_value).policy_loss, 1.6, 1e-6);
 }
 
 // value 1.5, old 1, target 3, clip 0.2: clipped value 1.2; 0.5 max(1.5^2, 1.8^2) = 1.62, flat. Target 0: 0.5 max(1.5^2,
@@ -47,14 +48,14 @@ static void a_ratio_under_the_clip_limits_losses_but_not_gains(void **state) {
 static void the_value_is_clipped_around_the_old_one_where_asked(void **state) {
   (void)state;
   vs_ppo_def def = {.clip = 0.2, .clip_value = true, .value_weight = 1.0};
-  float draw[4], dvalue;
-  assert_near(one_row(&def, 0.0, 0.0, 3.0, 1.0, 1.5f, draw, &dvalue).value_loss, 1.62, 1e-6);
-  assert_near(dvalue, 0.0, 0.0);
-  assert_near(one_row(&def, 0.0, 0.0, 0.0, 1.0, 1.5f, draw, &dvalue).value_loss, 1.125, 1e-6);
-  assert_near(dvalue, 1.5, 1e-6);
+  float d_raw[4], d_value;
+  assert_near(one_row(&def, 0.0, 0.0, 3.0, 1.0, 1.5f, d_raw, &d_value).value_loss, 1.62, 1e-6);
+  assert_near(d_value, 0.0, 0.0);
+  assert_near(one_row(&def, 0.0, 0.0, 0.0, 1.0, 1.5f, d_raw, &d_value).value_loss, 1.125, 1e-6);
+  assert_near(d_value, 1.5, 1e-6);
   def.clip_value = false;
-  assert_near(one_row(&def, 0.0, 0.0, 3.0, 1.0, 1.5f, draw, &dvalue).value_loss, 1.125, 1e-6);
-  assert_near(dvalue, -1.5, 1e-6);
+  assert_near(one_row(&def, 0.0, 0.0, 3.0, 1.0, 1.5f, d_raw, &d_value).value_loss, 1.125, 1e-6);
+  assert_near(d_value, -1.5, 1e-6);
 }
 
 // Random rows; every derivative against a central difference of the total loss. Rows whose ratio or value sits at a
@@ -86,11 +87,12 @@ static void make_rows(rows *r) {
   }
 }
 
-static double total(const vs_ppo_def *def, const rows *r, float draw[][4], float *dvalue) {
+static double total(const vs_ppo_def *def, const rows *r, float d_raw[][4], float *d_value) {
   const vs_ppo_batch batch = {ROWS,         NULL,         r->log_u[0], r->log_1_u[0],
                               r->old_log_p, r->advantage, r->target,   r->old_value};
   vs_ppo_stats stats = {0};
-  vs_ppo_loss(def, &batch, r->raw[0], r->value, ROWS, draw[0], dvalue, &stats);
+  const vs_ppo_outputs outputs = {r->raw[0], r->value, d_raw[0], d_value};
+  vs_ppo_loss(def, &batch, &outputs, ROWS, &stats);
   return vs_ppo_total(def, &stats);
 }
 
@@ -99,9 +101,9 @@ static void derivatives_agree_with_finite_differences(void **state) {
   const vs_ppo_def def = {.clip = 0.2, .clip_value = true, .entropy = 0.01, .value_weight = 0.5};
   const float h = 1e-2f;
   static rows at, moved;
-  float draw[ROWS][4], dvalue[ROWS], unused[ROWS][4], unused_value[ROWS];
+  float d_raw[ROWS][4], d_value[ROWS], unused[ROWS][4], unused_value[ROWS];
   make_rows(&at);
-  total(&def, &at, draw, dvalue);
+  total(&def, &at, d_raw, d_value);
   for (int i = 0; i < ROWS; i++) {
     for (int k = 0; k < 4; k++) {
       moved = at;
@@ -109,13 +111,13 @@ static void derivatives_agree_with_finite_differences(void **state) {
       double more = total(&def, &moved, unused, unused_value);
       moved.raw[i][k] = at.raw[i][k] - h;
       double less = total(&def, &moved, unused, unused_value);
-      assert_near(draw[i][k], (more - less) / (2.0 * h), 2e-5);
+      assert_near(d_raw[i][k], (more - less) / (2.0 * h), 2e-5);
     }
     moved = at;
     moved.value[i] = at.value[i] + h;
     double more = total(&def, &moved, unused, unused_value);
     moved.value[i] = at.value[i] - h;
-    assert_near(dvalue[i], (more - total(&def, &moved, unused, unused_value)) / (2.0 * h), 1e-5);
+    assert_near(d_value[i], (more - total(&def, &moved, unused, unused_value)) / (2.0 * h), 1e-5);
   }
 }
 

@@ -89,7 +89,7 @@ static void a_journal_that_is_continued_drops_what_came_after_the_checkpoint(voi
   (void)state;
   vs_journal *journal;
   char line[4096], path[128];
-  const vs_journal_eval eval = {"random:", 10, 0.9, 0.1, 0.0, 3.0, 0.5, 2.5, 2.0, 3.0};
+  const vs_train_score eval = {"random:", 10, 0.9, 0.1, 0.0, 3.0, 0.5, 2.5, 2.0, 3.0};
   assert_ok(vs_journal_open(folder, 0.0, &journal, err));
   for (int i = 1; i <= 5; i++) {
     vs_train_report report = {.update = i, .transitions = 1000.0 * i, .reward = -0.25 * i};

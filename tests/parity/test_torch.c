@@ -111,10 +111,10 @@ static void check_gradient(bool clip_value, bool imitate) {
   vs_learner_def def = {.shape = {VS_OBS_SIZE, 2, {256, 256}, VS_ACTION_SIZE, true},
                         .ppo = {.clip = 0.2, .clip_value = clip_value, .entropy = 0.01, .value_weight = 0.5},
                         .learning_rate = 1e-3,
-                        .first_shape = 4.0,
+                        .initial_concentration = 4.0,
                         .epochs = 1,
                         .minibatch = ROWS,
-                        .pieces = 3};
+                        .microbatches = 3};
   def.ppo.imitate = imitate;
   vs_learner learner;
   vs_pool *pool;
@@ -123,7 +123,7 @@ static void check_gradient(bool clip_value, bool imitate) {
   int rows[ROWS];
   for (int i = 0; i < ROWS; i++) rows[i] = i;
   vs_ppo_stats own = {0}, theirs = {0};
-  assert_ok(vs_learner_gradient(&learner, &batch, rows, ROWS, ROWS, 0.0, 1.0, &own, err));
+  assert_ok(vs_learner_gradient(&learner, &batch, &(vs_minibatch){rows, ROWS, ROWS, 0.0, 1.0}, &own, err));
   float *gradient = malloc(learner.net.size * sizeof *gradient);
   assert_ok(
       torch.gradient(torch.self, &learner.net, &def.ppo, learner.parameters, &batch, ROWS, gradient, &theirs, err));

@@ -314,7 +314,8 @@ static void mjpg_frames_are_decoded_and_damaged_ones_lost(void **state) {
   memset(bgr, 140, sizeof bgr);
   size_t size;
   fill(0, 0, 1, 1000000, 0);
-  assert_ok(vs_image_jpeg(&bgr[0][0][0], 192, 64, 48, 90, 1, driver.memory[0], sizeof driver.memory[0], &size, err));
+  assert_ok(vs_image_jpeg(&(vs_image){&bgr[0][0][0], 64, 48, 192}, &(vs_jpeg_def){90, 1}, driver.memory[0],
+                          sizeof driver.memory[0], &size, err));
   driver.filled[0].bytesused = (unsigned)size;
   vs_frame frame;
   vs_camera_got got;

@@ -93,12 +93,13 @@ static void a_jpeg_shrinks_and_is_refused_where_it_does_not_fit(void **state) {
   static uint8_t bgr[H][W][3], out[65536];
   for (int i = 0; i < W * H * 3; i++) (&bgr[0][0][0])[i] = (uint8_t)(i * 2654435761u >> 24);
   size_t full, half;
-  assert_ok(vs_image_jpeg(&bgr[0][0][0], 3 * W, W, H, 80, 1, out, sizeof out, &full, err));
+  assert_ok(vs_image_jpeg(&(vs_image){&bgr[0][0][0], W, H, 3 * W}, &(vs_jpeg_def){80, 1}, out, sizeof out, &full, err));
   assert_true(out[0] == 0xff && out[1] == 0xd8); // a JPEG begins so
-  assert_ok(vs_image_jpeg(&bgr[0][0][0], 3 * W, W, H, 80, 2, out, sizeof out, &half, err));
+  assert_ok(vs_image_jpeg(&(vs_image){&bgr[0][0][0], W, H, 3 * W}, &(vs_jpeg_def){80, 2}, out, sizeof out, &half, err));
   assert_true(half < full);
   vs_error err;
-  assert_int_equal(vs_image_jpeg(&bgr[0][0][0], 3 * W, W, H, 80, 1, out, 100, &full, &err), VS_FAIL);
+  assert_int_equal(vs_image_jpeg(&(vs_image){&bgr[0][0][0], W, H, 3 * W}, &(vs_jpeg_def){80, 1}, out, 100, &full, &err),
+                   VS_FAIL);
   assert_non_null(strstr(err.text, "does not fit 100"));
 }
 

@@ -14,7 +14,8 @@ static size_t make(void) {
   static const uint8_t colour[2][3] = {{20, 110, 235}, {200, 80, 25}};
   for (int i = 0; i < W * H; i++) memcpy(bgr[i / W][i % W], colour[i % W >= W / 2], 3);
   size_t size;
-  assert_ok(vs_image_jpeg(&bgr[0][0][0], 3 * W, W, H, 95, 1, file, sizeof file, &size, err));
+  assert_ok(
+      vs_image_jpeg(&(vs_image){&bgr[0][0][0], W, H, 3 * W}, &(vs_jpeg_def){95, 1}, file, sizeof file, &size, err));
   return size;
 }
 
