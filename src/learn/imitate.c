@@ -12,8 +12,8 @@ static vs_status update(vs_train *t, uint64_t seed, double *loss, vs_error *err)
   vs_learner_stats learnt = {0};
   vs_status s = vs_train_collect(t, &t->reward_start, &unused_s, &unused_s, err);
   if (s != VS_OK) return s;
-  vs_ppo_batch batch = vs_rollout_finish(&t->rollout, t->learner.parameters, &t->scale);
-  s = vs_train_rescale(t, &batch, err);
+  vs_ppo_batch batch;
+  s = vs_train_targets(t, &batch, err);
   if (s == VS_OK) s = vs_learner_update(&t->learner, &batch, seed, &learnt, err);
   if (s == VS_OK) s = vs_train_sum_up(t, &t->rollout.stats, &learnt.last, err);
   *loss = learnt.last.policy_loss / learnt.last.rows;
@@ -40,7 +40,7 @@ vs_status vs_train_imitate_over(vs_train *train, const vs_matches *matches, int 
     s = vs_league_init(&league, &watched, train->def.envs, train->league.size, train->actor, own_rollout.def.seed, err);
   train->matches = *matches;
   train->rollout = (vs_rollout){0};
-  if (s == VS_OK) s = vs_rollout_init(&train->rollout, &own_rollout.def, &train->learner, &league, err);
+  if (s == VS_OK) s = vs_rollout_init(&train->rollout, &own_rollout.def, &train->learner, &train->scale, &league, err);
   train->rollout.watch = true;
   train->learner.def.ppo.imitate = true;
   train->learner.def.ppo.clip_value = false;

@@ -28,7 +28,6 @@ struct vs_rollout_scratch {
   int jobs, jobs_max;
   // Of the step being worked on:
   vs_rollout *rollout;
-  const vs_value_scale *scale;
   int t;
   bool keep; // false: values only, of the state after the last step
 };
@@ -58,7 +57,7 @@ static bool allocate_io(vs_rollout *r) {
 static bool allocate_batch(vs_rollout *r) {
   bool failed = false;
   size_t n = (size_t)r->rows * (size_t)r->def.steps;
-  float **const vectors[] = {&r->log_p, &r->advantage, &r->target, &r->reward, &r->cut_value, &r->old_value};
+  float **const vectors[] = {&r->log_p, &r->advantage, &r->target, &r->reward, &r->truncated_value, &r->old_value};
   for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) *vectors[i] = zeroed(n, sizeof(float), &failed);
   r->x = malloc(n * VS_OBS_SIZE * sizeof(float));
   r->log_u = zeroed(n * A, sizeof(float), &failed);
@@ -106,10 +105,14 @@ static bool list_learning_rows(vs_rollout *r) {
   return true;
 }
 
-vs_status vs_rollout_init(vs_rollout *rollout, const vs_rollout_def *def, const vs_learner *learner, vs_league *league,
-                          vs_error *err) {
-  *rollout =
-      (vs_rollout){.def = *def, .net = &learner->net, .blas = &learner->blas, .pool = learner->pool, .league = league};
+vs_status vs_rollout_init(vs_rollout *rollout, const vs_rollout_def *def, const vs_learner *learner,
+                          const vs_value_scale *scale, vs_league *league, vs_error *err) {
+  *rollout = (vs_rollout){.def = *def,
+                          .net = &learner->net,
+                          .blas = &learner->blas,
+                          .pool = learner->pool,
+                          .league = league,
+                          .scale = scale};
   vs_symmetry_table_init(&rollout->symmetry);
   vs_net_shape shape = learner->net.shape;
   shape.critic = false;
@@ -154,7 +157,7 @@ void vs_rollout_free(vs_rollout *r) {
                          r->target,
                          r->value,
                          r->reward,
-                         r->cut_value,
+                         r->truncated_value,
                          r->old_value,
                          r->end,
                          r->mirrored};
@@ -209,7 +212,7 @@ static void infer_piece(void *context, int piece, int thread) {
   vs_net_forward(job->net, r->blas, job->parameters, x, job->count, work);
   for (int i = 0; i < job->count; i++) {
     size_t at = kept + (size_t)i;
-    if (learning) r->value[at] = (float)(work->value[i] * s->scale->deviation + s->scale->mean);
+    if (learning) r->value[at] = vs_value_in_reward(r->scale, work->value[i]);
     if (s->keep && !r->watch) sample_row(r, work->raw + i * 2 * A, job->row[i], mirrored[i], at, learning);
   }
 }
@@ -243,29 +246,33 @@ static void add_frozen_jobs(vs_rollout *r) {
 
 void vs_rollout_begin(vs_rollout *rollout) { rollout->stats = (vs_rollout_stats){0}; }
 
-void vs_rollout_act(vs_rollout *rollout, int t, const float *parameters, const vs_value_scale *scale) {
-  struct vs_rollout_scratch *s = rollout->scratch;
+// The learning rows' jobs of step t.
+static void begin_jobs(vs_rollout *r, int t, bool keep, const float *parameters) {
+  struct vs_rollout_scratch *s = r->scratch;
   s->t = t;
-  s->scale = scale;
-  s->keep = true;
+  s->keep = keep;
   s->jobs = 0;
-  add_jobs(s, (infer_job){rollout->net, parameters, rollout->row, 0, 0}, rollout->rows);
+  add_jobs(s, (infer_job){r->net, parameters, r->row, 0, 0}, r->rows);
+}
+
+void vs_rollout_act(vs_rollout *rollout, int t, const float *parameters) {
+  struct vs_rollout_scratch *s = rollout->scratch;
+  begin_jobs(rollout, t, true, parameters);
   if (!rollout->watch) add_frozen_jobs(rollout);
   vs_pool_run(rollout->pool, s->jobs, infer_piece, s);
   rollout->decision++;
 }
 
-// What a state was worth whose episode the clock cut short: rows [at, at + 3) of a match.
-static void value_of_cut(vs_rollout *r, int row, const float *parameters, const vs_value_scale *scale, float *out) {
+// What the last state of a truncated episode was worth to row `row` of all.
+static float truncated_value(const vs_rollout *r, int row, const float *parameters) {
   vs_net_work *work = &r->scratch->joint[0];
   float x[VS_OBS_SIZE];
   show(r, r->io.final_observation, row, x);
   vs_net_forward(r->net, r->blas, parameters, x, 1, work);
-  *out = (float)(work->value[0] * scale->deviation + scale->mean);
+  return vs_value_in_reward(r->scale, work->value[0]);
 }
 
-static void record_row(vs_rollout *r, int t, int i, const float *parameters, const vs_value_scale *scale,
-                       const vs_reward_weights *weights) {
+static void record_row(vs_rollout *r, int t, int i, const float *parameters, const vs_reward_weights *weights) {
   int row = r->row[i], env = row / (VS_TEAMS * VS_TEAM_SIZE);
   size_t at = (size_t)t * (size_t)r->rows + (size_t)i;
   const double *terms = r->io.reward_terms + (size_t)row * VS_REWARD_TERMS;
@@ -276,8 +283,8 @@ static void record_row(vs_rollout *r, int t, int i, const float *parameters, con
   }
   r->reward[at] = (float)reward;
   r->stats.reward += reward;
-  r->end[at] = !r->io.done[env] ? VS_GOES_ON : r->io.time_limit[env] ? VS_CUT : VS_ENDED;
-  if (r->end[at] == VS_CUT) value_of_cut(r, row, parameters, scale, &r->cut_value[at]);
+  r->end[at] = !r->io.done[env] ? VS_GOES_ON : r->io.time_limit[env] ? VS_TRUNCATED : VS_TERMINATED;
+  if (r->end[at] == VS_TRUNCATED) r->truncated_value[at] = truncated_value(r, row, parameters);
 }
 
 // What the scripts did in step t, as samples of a Beta distribution. Full speed is moved off the edge of [0, 1], where
@@ -295,10 +302,9 @@ static void watch_actions(vs_rollout *r, int t) {
     }
 }
 
-void vs_rollout_record(vs_rollout *rollout, int t, const float *parameters, const vs_value_scale *scale,
-                       const vs_reward_weights *weights) {
+void vs_rollout_record(vs_rollout *rollout, int t, const float *parameters, const vs_reward_weights *weights) {
   if (rollout->watch) watch_actions(rollout, t);
-  for (int i = 0; i < rollout->rows; i++) record_row(rollout, t, i, parameters, scale, weights);
+  for (int i = 0; i < rollout->rows; i++) record_row(rollout, t, i, parameters, weights);
   rollout->stats.transitions += rollout->rows;
   for (int env = 0; env < rollout->def.envs; env++) {
     if (!rollout->io.done[env]) continue;
@@ -312,40 +318,30 @@ void vs_rollout_record(vs_rollout *rollout, int t, const float *parameters, cons
   }
 }
 
-void vs_value_scale_update(vs_value_scale *scale, double count, double sum, double squares) {
-  if (!scale->on) return;
-  static const double keep = 0.9; // of an update: the scale follows the returns over about ten batches
-  scale->weight = keep * scale->weight + count;
-  scale->sum = keep * scale->sum + sum;
-  scale->squares = keep * scale->squares + squares;
-  scale->mean = scale->sum / scale->weight;
-  scale->deviation = fmax(sqrt(fmax(scale->squares / scale->weight - scale->mean * scale->mean, 0.0)), 1e-3);
+void vs_rollout_bootstrap(vs_rollout *rollout, const float *parameters) {
+  begin_jobs(rollout, rollout->def.steps, false, parameters);
+  vs_pool_run(rollout->pool, rollout->scratch->jobs, infer_piece, rollout->scratch);
 }
 
-void vs_value_scale_fit(const vs_value_scale *from, const vs_value_scale *to, const vs_net *net, float *parameters) {
-  int last = net->shape.width[net->shape.layers - 1];
-  float *weight = parameters + net->head_weight[VS_CRITIC], *bias = parameters + net->head_bias[VS_CRITIC];
-  double ratio = from->deviation / to->deviation;
-  for (int i = 0; i < last; i++) weight[i] = (float)(weight[i] * ratio);
-  *bias = (float)((from->deviation * *bias + from->mean - to->mean) / to->deviation);
+void vs_rollout_advantages(vs_rollout *rollout) {
+  const vs_gae_batch batch = {.steps = rollout->def.steps,
+                              .rows = rollout->rows,
+                              .gamma = rollout->def.gamma,
+                              .lambda = rollout->def.lambda,
+                              .reward = rollout->reward,
+                              .value = rollout->value,
+                              .end = rollout->end,
+                              .truncated_value = rollout->truncated_value};
+  vs_gae(&batch, rollout->advantage, rollout->target);
 }
 
-vs_ppo_batch vs_rollout_finish(vs_rollout *rollout, const float *parameters, vs_value_scale *scale) {
-  struct vs_rollout_scratch *s = rollout->scratch;
-  s->t = rollout->def.steps;
-  s->scale = scale;
-  s->keep = false;
-  s->jobs = 0;
-  add_jobs(s, (infer_job){rollout->net, parameters, rollout->row, 0, 0}, rollout->rows);
-  vs_pool_run(rollout->pool, s->jobs, infer_piece, s);
-  vs_gae(rollout->def.steps, rollout->rows, rollout->def.gamma, rollout->def.lambda, rollout->reward, rollout->value,
-         rollout->end, rollout->cut_value, rollout->advantage, rollout->target);
-  return (vs_ppo_batch){rollout->rows * rollout->def.steps,
-                        rollout->x,
-                        rollout->log_u,
-                        rollout->log_1_u,
-                        rollout->log_p,
-                        rollout->advantage,
-                        rollout->target,
-                        rollout->old_value};
+vs_ppo_batch vs_rollout_batch(const vs_rollout *rollout) {
+  return (vs_ppo_batch){.rows = rollout->rows * rollout->def.steps,
+                        .x = rollout->x,
+                        .log_u = rollout->log_u,
+                        .log_1_u = rollout->log_1_u,
+                        .old_log_p = rollout->log_p,
+                        .advantage = rollout->advantage,
+                        .target = rollout->target,
+                        .old_value = rollout->old_value};
 }

@@ -1,11 +1,12 @@
-// Collects transitions: many matches, step after step, the current policy and its frozen opponents sampled, rewards
-// summed, episodes' ends sorted into goals and time limits. Reads no clock; train.c times it.
+// Collects transitions: many matches, step after step, the present policy and its frozen opponents sampled, rewards
+// summed, episodes' ends sorted into terminated (a goal) and truncated (the clock). Reads no clock; train.c times it.
 #ifndef VSSS_LEARN_ROLLOUT_H
 #define VSSS_LEARN_ROLLOUT_H
 
 #include "league.h"
 #include "learner.h"
 #include "policy_io.h"
+#include "value_scale.h"
 #include "vsss/observe.h"
 #include "vsss/reward.h"
 #include "vsss/vecenv.h"
@@ -20,14 +21,6 @@ typedef struct vs_matches {
   vs_status (*restore)(void *self, const void *state, vs_error *err);
   void (*free)(void *self);
 } vs_matches;
-
-// Mean and deviation of the returns: the critic works in units of it, so that its loss has the same scale whatever the
-// reward. Without normalisation mean 0 and deviation 1.
-typedef struct vs_value_scale {
-  bool on;
-  double mean, deviation;
-  double weight, sum, squares; // decayed sums of the targets
-} vs_value_scale;
 
 typedef struct vs_rollout_def {
   int envs, steps;
@@ -44,42 +37,40 @@ typedef struct vs_rollout_stats {
 
 typedef struct vs_rollout {
   vs_rollout_def def;
-  const vs_net *net;    // borrowed, of the learner
-  vs_net actor;         // of the frozen selves
-  const vs_blas *blas;  // borrowed
-  vs_pool *pool;        // borrowed
-  vs_league *league;    // borrowed
-  bool watch;           // imitation: scripts play, this policy only values what they see
-  vs_vecenv_buffers io; // [rows of all matches], owned
+  const vs_net *net;           // borrowed, of the learner
+  vs_net actor;                // of the frozen selves
+  const vs_blas *blas;         // borrowed
+  vs_pool *pool;               // borrowed
+  vs_league *league;           // borrowed
+  const vs_value_scale *scale; // borrowed: of the critic's outputs
+  bool watch;                  // imitation: scripts play, this policy only values what they see
+  vs_vecenv_buffers io;        // [rows of all matches], owned
   vs_symmetry_table symmetry;
   int rows;           // that learn
   int *row;           // [rows]: their rows in io
   long long decision; // steps since the start of the run: numbers the random draws
   // Step-major, [steps][rows], as the network sees and draws them (policy_io.h); value [steps + 1][rows] in reward units.
-  float *x, *log_u, *log_1_u, *log_p, *advantage, *target, *value, *reward, *cut_value, *old_value;
+  float *x, *log_u, *log_1_u, *log_p, *advantage, *target, *value, *reward, *truncated_value, *old_value;
   uint8_t *end;
   bool *mirrored;         // [rows]: the network saw this step's observation as its mirror image
   vs_rollout_stats stats; // of the present batch
   struct vs_rollout_scratch *scratch;
 } vs_rollout;
 
-vs_status vs_rollout_init(vs_rollout *rollout, const vs_rollout_def *def, const vs_learner *learner, vs_league *league,
-                          vs_error *err);
+vs_status vs_rollout_init(vs_rollout *rollout, const vs_rollout_def *def, const vs_learner *learner,
+                          const vs_value_scale *scale, vs_league *league, vs_error *err);
 void vs_rollout_free(vs_rollout *rollout);
 
 void vs_rollout_begin(vs_rollout *rollout); // a new batch: forgets the sums
 // Step t: values and sampled actions of everybody who is no script, from io.observation into io.action.
-void vs_rollout_act(vs_rollout *rollout, int t, const float *parameters, const vs_value_scale *scale);
+void vs_rollout_act(vs_rollout *rollout, int t, const float *parameters);
 // After the matches stepped: rewards, ends, the league's results.
-void vs_rollout_record(vs_rollout *rollout, int t, const float *parameters, const vs_value_scale *scale,
-                       const vs_reward_weights *weights);
-// After the last step: values of the present observations, advantages and targets. Updates the scale and returns the
-// batch in its units; fits_head: what vs_value_scale_fit needs.
-vs_ppo_batch vs_rollout_finish(vs_rollout *rollout, const float *parameters, vs_value_scale *scale);
-
-// The change of scale applied to the critic's last layer, so that its predictions in reward units stay the same
-// (Pop-Art, van Hasselt et al. 2016).
-void vs_value_scale_update(vs_value_scale *scale, double count, double sum, double squares);
-void vs_value_scale_fit(const vs_value_scale *from, const vs_value_scale *to, const vs_net *net, float *parameters);
+void vs_rollout_record(vs_rollout *rollout, int t, const float *parameters, const vs_reward_weights *weights);
+// After the last step: value[steps], of the states that followed it.
+void vs_rollout_bootstrap(vs_rollout *rollout, const float *parameters);
+// Then advantages and value targets (gae.h), both in reward units.
+void vs_rollout_advantages(vs_rollout *rollout);
+// The batch for the learner, once value_scale.h has taken its targets and old values into the critic's unit.
+vs_ppo_batch vs_rollout_batch(const vs_rollout *rollout);
 
 #endif

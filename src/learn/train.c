@@ -108,7 +108,7 @@ static vs_status make_league_and_rollout(vs_train *t, vs_error *err) {
   uint64_t seed = vs_seed_mix(t->def.seed, 1000 + (uint64_t)vs_group_rank(t->group));
   s = vs_league_init(&t->league, &league, t->def.envs, actor.size, t->actor, seed, err);
   const vs_rollout_def def = {t->def.envs, t->def.steps, t->def.gamma, t->def.lambda, seed, training_io(&t->def)};
-  if (s == VS_OK) s = vs_rollout_init(&t->rollout, &def, &t->learner, &t->league, err);
+  if (s == VS_OK) s = vs_rollout_init(&t->rollout, &def, &t->learner, &t->scale, &t->league, err);
   return s;
 }
 
@@ -121,7 +121,7 @@ vs_status vs_train_new_over(const vs_train_def *def, const vs_matches *matches, 
   t->def = *def;
   if (matches) t->matches = *matches;
   t->group = group;
-  t->scale = (vs_value_scale){.on = def->value_scale, .mean = 0.0, .deviation = 1.0};
+  t->scale = vs_value_scale_make(def->value_scale);
   vs_status s = vs_train_def_check(def, err);
   if (s == VS_OK) s = vs_reward_mix_parse(def->reward, &t->reward_start, err);
   if (s == VS_OK) s = vs_reward_mix_parse(def->reward_end, &t->reward_end, err);
@@ -162,37 +162,25 @@ vs_status vs_train_collect(vs_train *t, const vs_reward_weights *weights, double
   vs_rollout_begin(&t->rollout);
   for (int step = 0; step < t->def.steps; step++) {
     double start = seconds();
-    vs_rollout_act(&t->rollout, step, parameters, &t->scale);
+    vs_rollout_act(&t->rollout, step, parameters);
     double acted = seconds();
     vs_status s = t->matches.step(t->matches.self, &t->rollout.io, err);
     if (s != VS_OK) return s;
     double stepped = seconds();
-    vs_rollout_record(&t->rollout, step, parameters, &t->scale, weights);
+    vs_rollout_record(&t->rollout, step, parameters, weights);
     *simulate_s += stepped - acted;
     *infer_s += acted - start + seconds() - stepped;
   }
   return VS_OK;
 }
 
-vs_status vs_train_rescale(vs_train *t, const vs_ppo_batch *batch, vs_error *err) {
+vs_status vs_train_targets(vs_train *t, vs_ppo_batch *out, vs_error *err) {
   vs_rollout *r = &t->rollout;
-  double sums[3] = {batch->rows, 0.0, 0.0};
-  for (int i = 0; i < batch->rows; i++) {
-    sums[1] += r->target[i];
-    sums[2] += (double)r->target[i] * r->target[i];
-  }
-  if (t->group) {
-    vs_status s = t->group->sum_doubles(t->group->self, sums, 3, err);
-    if (s != VS_OK) return s;
-  }
-  vs_value_scale before = t->scale;
-  vs_value_scale_update(&t->scale, sums[0], sums[1], sums[2]);
-  vs_value_scale_fit(&before, &t->scale, &t->learner.net, t->learner.parameters);
-  for (int i = 0; i < batch->rows; i++) {
-    r->target[i] = (float)((r->target[i] - t->scale.mean) / t->scale.deviation);
-    r->old_value[i] = (float)((r->value[i] - t->scale.mean) / t->scale.deviation);
-  }
-  return VS_OK;
+  vs_rollout_bootstrap(r, t->learner.parameters);
+  vs_rollout_advantages(r);
+  *out = vs_rollout_batch(r);
+  const vs_value_batch values = {out->rows, r->target, r->old_value, r->value};
+  return vs_value_scale_follow(&t->scale, t->group, &values, &t->learner.net, t->learner.parameters, err);
 }
 
 static double learning_rate(const vs_train *t) {
@@ -215,7 +203,7 @@ static double recent_score(const vs_league *league, vs_opponent_kind kind) {
   return NAN;
 }
 
-static void fill_report(const vs_train *t, const vs_reward_weights *weights, const vs_learner_stats *learnt,
+static void make_report(const vs_train *t, const vs_reward_weights *weights, const vs_learner_stats *learnt,
                         vs_train_report *report) {
   const vs_rollout_stats *played = &t->rollout.stats;
   const vs_ppo_stats *ppo = &learnt->last;
@@ -260,31 +248,39 @@ static vs_status advance(vs_train *t, int rows, vs_error *err) {
   return s == VS_OK ? vs_league_after_update(&t->league, t->updates, t->actor, &results, NULL, err) : s;
 }
 
+static vs_status start_matches(vs_train *t, vs_error *err) {
+  if (t->started) return VS_OK;
+  t->started = true;
+  return t->matches.reset(t->matches.self, &t->rollout.io, err);
+}
+
 vs_status vs_train_update(vs_train *train, vs_train_report *report, vs_error *err) {
   double start = seconds();
   *report = (vs_train_report){0};
-  vs_status s = VS_OK;
-  if (!train->started) s = train->matches.reset(train->matches.self, &train->rollout.io, err);
-  train->started = true;
+  vs_ppo_batch batch = {0};
+  vs_learner_stats learnt = {0};
   const vs_reward_weights weights = vs_reward_mix_at(&train->reward_start, &train->reward_end, train->def.anneal_from_m,
                                                      train->def.anneal_to_m, (double)train->transitions * 1e-6);
-  if (s == VS_OK) s = vs_train_collect(train, &weights, &report->simulate_s, &report->infer_s, err);
-  if (s != VS_OK) return s;
-  double played = seconds();
-  vs_ppo_batch batch = vs_rollout_finish(&train->rollout, train->learner.parameters, &train->scale);
-  s = vs_train_rescale(train, &batch, err);
-  vs_learner_stats learnt = {0};
   train->learner.def.learning_rate = learning_rate(train);
   uint64_t seed = vs_seed_mix(train->def.seed, (uint64_t)train->updates);
+
+  // Collect: `steps` decisions of every match by the present policy.
+  vs_status s = start_matches(train, err);
+  if (s == VS_OK) s = vs_train_collect(train, &weights, &report->simulate_s, &report->infer_s, err);
+  double collected = seconds();
+  // Value targets and advantages.
+  if (s == VS_OK) s = vs_train_targets(train, &batch, err);
+  // Update: epochs of minibatches, then the league looks at the result.
   if (s == VS_OK) s = vs_learner_update(&train->learner, &batch, seed, &learnt, err);
   if (s == VS_OK) s = vs_train_sum_up(train, &train->rollout.stats, &learnt.last, err);
   if (s == VS_OK) s = advance(train, batch.rows, err);
   if (s != VS_OK) return s;
+  // Report.
   double end = seconds();
-  report->learn_s = end - played;
+  report->learn_s = end - collected;
   report->transitions_per_s = batch.rows * vs_group_size(train->group) / (end - start);
   train->wall_s += end - start;
-  fill_report(train, &weights, &learnt, report);
+  make_report(train, &weights, &learnt, report);
   return VS_OK;
 }
 

@@ -38,8 +38,8 @@ vs_status vs_train_new_over(const vs_train_def *def, const vs_matches *matches, 
 // Plays one batch; adds the time spent in the simulator and in the networks.
 vs_status vs_train_collect(vs_train *train, const vs_reward_weights *weights, double *simulate_s, double *infer_s,
                            vs_error *err);
-// Targets and old values into units of the returns' deviation as known now; the critic's last layer follows.
-vs_status vs_train_rescale(vs_train *train, const vs_ppo_batch *batch, vs_error *err);
+// What the collected batch teaches: advantages, and value targets in the critic's unit, which follows the returns.
+vs_status vs_train_targets(vs_train *train, vs_ppo_batch *out, vs_error *err);
 // Sums over all ranks, in place; the structs are doubles throughout.
 vs_status vs_train_sum_up(const vs_train *train, vs_rollout_stats *played, vs_ppo_stats *ppo, vs_error *err);
 // Every frozen self becomes the present policy.

@@ -6,23 +6,6 @@
 #include "learn/train_internal.h"
 #include "tiny_matches.h"
 
-// Two batches of targets: 1, 3 (mean 2, squares 10) and 5, 5 (sum 10, squares 50). Kept part of the first: 0.9. Mean
-// (0.9 * 4 + 10)/(0.9 * 2 + 2) = 3.5789; mean square (0.9 * 10 + 50)/3.8 = 15.526; deviation sqrt(2.7175) = 1.6485.
-static void the_scale_follows_the_returns(void **state) {
-  (void)state;
-  vs_value_scale scale = {.on = true, .deviation = 1.0};
-  vs_value_scale_update(&scale, 2, 4, 10);
-  assert_near(scale.mean, 2.0, 1e-12);
-  assert_near(scale.deviation, 1.0, 1e-12);
-  vs_value_scale_update(&scale, 2, 10, 50);
-  assert_near(scale.mean, 3.578947, 1e-6);
-  assert_near(scale.deviation, 1.648469, 1e-5);
-  vs_value_scale off = {.deviation = 1.0};
-  vs_value_scale_update(&off, 2, 4, 10);
-  assert_near(off.mean, 0.0, 0.0);
-  assert_near(off.deviation, 1.0, 0.0);
-}
-
 static vs_train *open_tiny(const char *opponent, int length) {
   vs_train_def def = vs_train_def_default();
   snprintf(def.precision, sizeof def.precision, "fp32"); // auto may choose another one each time
@@ -39,23 +22,6 @@ static vs_train *open_tiny(const char *opponent, int length) {
   return train;
 }
 
-// A change of scale may not change what the critic says in reward units.
-static void the_critic_says_the_same_after_a_change_of_scale(void **state) {
-  (void)state;
-  vs_train *t = open_tiny("frozen", 7);
-  float x[VS_OBS_SIZE] = {0.7f, -0.3f};
-  vs_net_work work;
-  const vs_value_scale from = {.mean = 0.5, .deviation = 2.0}, to = {.mean = -3.0, .deviation = 0.25};
-  assert_ok(vs_net_work_init(&work, &t->learner.net, 1, false, NULL, err));
-  vs_net_forward(&t->learner.net, &t->learner.blas, t->learner.parameters, x, 1, &work);
-  double before = work.value[0] * from.deviation + from.mean;
-  vs_value_scale_fit(&from, &to, &t->learner.net, t->learner.parameters);
-  vs_net_forward(&t->learner.net, &t->learner.blas, t->learner.parameters, x, 1, &work);
-  assert_near(work.value[0] * to.deviation + to.mean, before, 1e-5);
-  vs_net_work_free(&work);
-  vs_train_free(t);
-}
-
 // Episodes of 7 steps; every third ends by a goal, the others by the clock: of 20 steps, steps 6 (goal) and 13 (clock)
 // end one. Rows of the learning side only, three a match.
 // gain (2u - 1), clipped to [-1, 1].
@@ -63,7 +29,7 @@ static double command(const vs_train *t, double log_u) {
   return fmin(fmax(t->def.action_gain * (2.0 * exp(log_u) - 1.0), -1.0), 1.0);
 }
 
-static void ends_are_goals_or_cuts_and_rewards_are_the_weighted_terms(void **state) {
+static void episodes_terminate_by_goals_or_are_truncated_and_rewards_are_the_weighted_terms(void **state) {
   (void)state;
   vs_train *t = open_tiny("frozen", 7);
   vs_rollout *r = &t->rollout;
@@ -74,7 +40,7 @@ static void ends_are_goals_or_cuts_and_rewards_are_the_weighted_terms(void **sta
   for (int step = 0; step < 20; step++)
     for (int i = 0; i < r->rows; i++) {
       int at = step * r->rows + i;
-      assert_int_equal(r->end[at], step == 6 ? VS_ENDED : step == 13 ? VS_CUT : VS_GOES_ON);
+      assert_int_equal(r->end[at], step == 6 ? VS_TERMINATED : step == 13 ? VS_TRUNCATED : VS_GOES_ON);
       // progress = s left - right^2 of the action taken.
       double left = command(t, r->log_u[2 * at]), right = command(t, r->log_u[2 * at + 1]);
       assert_near(r->reward[at], r->x[(size_t)at * VS_OBS_SIZE] * left - right * right, 1e-5);
@@ -97,7 +63,7 @@ static void a_mirrored_observation_drives_mirrored_wheels(void **state) {
     newest[VS_OBS_OWN_ACTION] = 0.25f;
   }
   vs_rollout_begin(r);
-  vs_rollout_act(r, 0, t->learner.parameters, &t->scale);
+  vs_rollout_act(r, 0, t->learner.parameters);
   for (int row = 0; row < r->rows; row++) {
     const float *newest = r->x + (row + 1) * VS_OBS_SIZE - VS_OBS_FRAME, *action = r->io.action + 2 * row;
     int mirrored = row % 2;
@@ -126,9 +92,7 @@ static void the_present_policy_plays_the_same_whatever_the_opponents(void **stat
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_scale_follows_the_returns),
-      cmocka_unit_test(the_critic_says_the_same_after_a_change_of_scale),
-      cmocka_unit_test(ends_are_goals_or_cuts_and_rewards_are_the_weighted_terms),
+      cmocka_unit_test(episodes_terminate_by_goals_or_are_truncated_and_rewards_are_the_weighted_terms),
       cmocka_unit_test(a_mirrored_observation_drives_mirrored_wheels),
       cmocka_unit_test(the_present_policy_plays_the_same_whatever_the_opponents),
   };
