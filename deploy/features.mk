@@ -17,7 +17,7 @@ choose = $(if $(HAVE_$(1)),$(2:.c=_stub.c),$(2))
 
 # LCM: lcm_types/NAME.lcm holds struct NAME of package vsss; lcm-gen makes build/gen/lcm/vsss_NAME.{c,h}.
 FEATURE_EXCLUDE += $(call choose,LCM,src/comms/bus.c)
-LCM_SRC := src/comms/bus_encode.c src/comms/bus_decode.c
+LCM_SRC := src/comms/bus_encode.c src/comms/bus_decode.c src/comms/tick.c
 FEATURE_EXCLUDE += $(if $(HAVE_LCM),,$(LCM_SRC))
 ifneq ($(HAVE_LCM),)
 LCM_TYPES := $(wildcard lcm_types/*.lcm)

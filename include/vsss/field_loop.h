@@ -25,6 +25,12 @@ extern "C" {
 // A player that has not answered by then hangs: the robots stop and it is started anew.
 #define VS_FIELD_PATIENCE_MS 100
 
+// The run that a record is of, for computing it again: instead of a camera, a radio and a clock.
+typedef struct vs_field_rerun {
+  int width_px, height_px; // of the pictures
+  int64_t start_us;        // when it began, monotonic
+} vs_field_rerun;
+
 typedef struct vs_field_def {
   const char *camera;   // source (camera.h)
   const char *calib;    // file; NULL: a camera camera_height_m straight above the middle, as high as it must be
@@ -42,12 +48,15 @@ typedef struct vs_field_def {
   vs_camera_def camera_def;
   vs_detector_def detector;
   vs_track_def tracker;
-  bool go;             // the robots may move from the start, and after a FAULT by itself: for rigs and unattended tests
-  bool referee_goes;   // a referee on LCM releases the robots with each restart and stops them at half time
-  bool lcm;            // publish, and listen to a referee
-  double image_hz;     // pictures a second on VSSS_IMAGE, 0.1..5; 0: none
-  bool lcm_remote;     // hear a referee on another machine too
-  const char *lcm_url; // NULL: the default one, without which we play on; given: failing to open it is an error
+  bool go;            // the robots may move from the start, and after a FAULT by itself: for rigs and unattended tests
+  bool referee_goes;  // a referee on LCM releases the robots with each restart and stops them at half time
+  bool lcm;           // publish, and listen to a referee
+  double image_hz;    // pictures a second on VSSS_IMAGE, 0.1..5; 0: none
+  bool lcm_remote;    // hear a referee on another machine too
+  const char *record; // file: a log of LCM from which the run can be computed again; NULL: none
+  const char *config_file;     // the field.ini this was made of, for the record; NULL: none
+  const vs_field_rerun *rerun; // NULL: a field
+  const char *lcm_url;         // NULL: the default one, without which we play on; given: failing to open it is an error
 } vs_field_def;
 vs_field_def vs_field_def_default(void);
 
@@ -77,6 +86,7 @@ typedef struct vs_field_stats {
   int64_t player_failures; // wrong numbers, crashes, hangs; the robots stopped and the player was started anew
   int64_t events;          // heard from a referee
   int64_t lost_messages;
+  int64_t lost_record; // messages that the record lacks
   vs_histogram stage[VS_STAGES];
   vs_track_stats track;
   uint64_t entered[VS_SAFETY_STATES]; // how often each state of safety.h
@@ -109,6 +119,15 @@ void vs_field_free(vs_field *field);
 // the tracker's prediction for VS_TRACK_HOLD_US; then, or when the camera or the player is gone, the robots stop until it
 // is back. VS_FAIL: a recording that cannot be read.
 vs_status vs_field_tick(vs_field *field, vs_field_tick_result *out, vs_error *err);
+
+// One turn of a record computed again, with def.rerun set: tracker, referee, player and safety as they were then. What came of
+// it is in out, and the same in the fields of *again that a turn leaves. VS_FAIL: the turn took another way than the recorded
+// one: it looked at the clock more often.
+struct vs_tick;
+vs_status vs_field_again(vs_field *field, const struct vs_tick *tick, struct vs_tick *again, vs_error *err);
+
+// 16 digits of the file behind a player's URI; "": it has none.
+const char *vs_field_policy_hash(const char *uri, char out[20]);
 
 // The operator's word: releases the robots, out of a FAULT too, or stops them at once. Until the first release they stand.
 void vs_field_arm(vs_field *field, bool go);

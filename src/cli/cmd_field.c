@@ -52,7 +52,8 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
       {"seconds", VS_FLAG_REAL, &o->seconds, "S", "then stop; 0: until Ctrl-C or the recording's end", 0, 86400},
       {"seed", VS_FLAG_SEED, &o->seed, "N", "of a policy that draws", 0, 0},
       {"stats", VS_FLAG_TEXT, &o->stats, "FILE", "write the latencies and counters as JSON at the end", 0, 0},
-      {"record", VS_FLAG_TEXT, &o->record, "FILE", "write every frame's tracked world as CSV; valid: seen in it", 0, 0},
+      {"record", VS_FLAG_TEXT, &o->record, "FILE",
+       "a log from which 'vsss replay FILE --check' computes all again; .csv: the tracked world only", 0, 0},
       {"rt", VS_FLAG_INT, &o->rt, "PRIO", "real-time priority, such as 50, and locked memory; 0: none", 0, 99},
       {"lcm", VS_FLAG_TEXT, &o->lcm, "URL", "of the messages", 0, 0},
       {"lcm-remote", VS_FLAG_SWITCH, &o->lcm_remote, NULL, "obey a referee on another machine too", 0, 0},
@@ -132,7 +133,13 @@ static void print_setup(const vs_field *field, const vs_field_def *def, const ch
   fflush(stdout);
 }
 
-// For the record an object is valid only in the frames it was seen in: in between the tracker predicts.
+// A record is a log, or where its name says so a table.
+static bool is_table(const char *path) {
+  size_t length = path ? strlen(path) : 0;
+  return length >= 4 && !strcmp(path + length - 4, ".csv");
+}
+
+// For the table an object is valid only in the frames it was seen in: in between the tracker predicts.
 static void mark_seen(const vs_field *field, const vs_field_def *def, vs_world *world) {
   const vs_tracker *tracker = vs_field_tracker(field);
   vs_team other = def->team == VS_BLUE ? VS_YELLOW : VS_BLUE;
@@ -187,7 +194,7 @@ static bool obey(vs_operator *operator_, vs_field *field, vs_progress *progress,
 static vs_status run(const options *o, const vs_field_def *def, vs_operator *operator_, vs_field *field,
                      vs_error *err) {
   vs_world_csv record;
-  vs_status s = vs_world_csv_open(o->record, &record, err);
+  vs_status s = vs_world_csv_open(is_table(o->record) ? o->record : NULL, &record, err);
   if (s != VS_OK) return s;
   vs_progress progress;
   vs_progress_start(&progress);
@@ -233,6 +240,7 @@ int cmd_field(int argc, char **argv) {
     s = field_guest_play(&guest, &err);
     return s == VS_OK ? 0 : vs_cli_error("field", &err);
   }
+  config.def.record = is_table(o.record) ? NULL : o.record;
   use_rig_calib(&o, &config.def, rig_calib, sizeof rig_calib);
   vs_cli_catch_interrupts();
   vs_cli_before_the_end(vs_sender_last_stop);
@@ -250,6 +258,8 @@ int cmd_field(int argc, char **argv) {
   vs_field_get_stats(field, &stats);
   vs_field_free(field); // stops the robots
   vs_field_report_print(&stats);
+  if (stats.lost_record && s == VS_OK)
+    s = vs_fail(&err, VS_FAIL, "%s: %lld turns are missing; is the disk full?", o.record, (long long)stats.lost_record);
   if (o.stats && s == VS_OK) s = vs_field_report_json(o.stats, &stats, &err);
   return s == VS_OK ? 0 : vs_cli_error("field", &err);
 }

@@ -45,7 +45,7 @@ vs_status replay_publish(vs_bus_log *log, const vs_flag_list *wanted, const char
 int cmd_replay(int argc, char **argv) {
   replay_def def = {.show = true};
   const char *video = NULL, *url = NULL;
-  bool publish = false;
+  bool publish = false, check = false;
   double speed = 1.0;
   int fps = 30;
   const vs_flag flags[] = {
@@ -54,17 +54,21 @@ int cmd_replay(int argc, char **argv) {
       {"video", VS_FLAG_TEXT, &video, "FILE", "draw it into a video, such as out.mp4", 0, 0},
       {"fps", VS_FLAG_INT, &fps, "N", "pictures per second of the video", 1, 120},
       {"publish", VS_FLAG_SWITCH, &publish, NULL, "send the messages again, as they came", 0, 0},
+      {"check", VS_FLAG_SWITCH, &check, NULL, "of 'field --record': compute all again; the same commands, bit for bit?",
+       0, 0},
       {"speed", VS_FLAG_REAL, &speed, "X", "times faster than they came", 0.01, 1000},
       {"lcm", VS_FLAG_TEXT, &url, "URL", "where to send to (LCM_DEFAULT_URL, else " VS_BUS_DEFAULT_URL ")", 0, 0},
       {NULL, VS_FLAG_SWITCH, NULL, NULL, NULL, 0, 0}};
   vs_flag_list words = {0};
   vs_error err = {0};
   bool help;
-  vs_status s = vs_args_parse(argc, argv, "replay LOG [flags]",
-                              "Shows a log of lcm-logger: the referee's events, the score and what the log holds.",
-                              flags, &words, &help, &err);
+  vs_status s = vs_args_parse(
+      argc, argv, "replay LOG [flags]",
+      "Shows a log of lcm-logger or of 'field --record': the referee's events, the score and what it holds.", flags,
+      &words, &help, &err);
   if (s == VS_OK && help) return 0;
-  if (s == VS_OK && video && publish) s = vs_fail(&err, VS_USAGE, "--video and --publish: choose one");
+  if (s == VS_OK && (video != NULL) + publish + check > 1)
+    s = vs_fail(&err, VS_USAGE, "--video, --publish, --check: choose one");
   if (s == VS_OK && words.count != 1)
     s = vs_fail(&err, VS_USAGE, "expected one log file, such as 'vsss replay lcmlog-2026-11-22.00'");
   vs_bus_log *log = NULL;
@@ -73,6 +77,11 @@ int cmd_replay(int argc, char **argv) {
   if (s != VS_OK) return vs_cli_error("replay", &err);
 
   vs_cli_catch_interrupts();
+  if (check) {
+    s = replay_check(log, words.value[0], &err);
+    vs_bus_log_close(log);
+    return s == VS_OK ? 0 : vs_cli_error("replay", &err);
+  }
   replay_summary *summary = calloc(1, sizeof *summary);
   def.show = !publish && !video;
   s = summary ? replay_scan(log, &def, summary, &err) : vs_fail(&err, VS_FAIL, "out of memory");

@@ -1,5 +1,6 @@
 #include "field_config.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "cli.h"
@@ -9,7 +10,8 @@
 
 enum { ROWS = 120, OWN_ROWS = 15 };
 
-static vs_status load(const char *path, vs_field_config *c, vs_error *err) {
+// text NULL: what the file at path holds.
+static vs_status load(const char *path, const char *text, vs_field_config *c, vs_error *err) {
   vs_field_def *d = &c->def;
   vs_config_key rows[ROWS] = {
       {"field.policy", VS_CONFIG_TEXT, c->policy, sizeof c->policy, 0, 0, "who decides: a player URI"},
@@ -31,24 +33,18 @@ static vs_status load(const char *path, vs_field_config *c, vs_error *err) {
   };
   int n = vs_vision_schema(&d->detector, &d->tracker, &d->camera_def, &c->vision, rows + OWN_ROWS, ROWS - OWN_ROWS - 1);
   rows[OWN_ROWS + n].name = NULL;
-  vs_status s = vs_config_load(path, rows, err);
+  vs_status s = text ? vs_config_parse(path, text, rows, err) : vs_config_load(path, rows, err);
   if (s == VS_OK && vs_vision_take(&c->vision, &d->detector, &d->tracker, err) != VS_OK)
     return vs_fail_prefix(err, "%s", path);
   return s;
 }
 
-vs_status vs_field_config_load(const char *path, vs_field_config *c, vs_error *err) {
+static vs_status take(const char *path, const char *text, vs_field_config *c, vs_error *err) {
   memset(c, 0, sizeof *c);
   vs_field_def *d = &c->def;
   *d = vs_field_def_default();
   for (int i = 0; i < VS_TEAM_SIZE; i++) c->radio_id[i] = d->radio_id[i];
-  char found[512];
-  vs_status s = VS_OK;
-  if (!path) {
-    s = vs_path_find("deploy/config/field.ini", found, sizeof found, err);
-    path = found;
-  }
-  if (s == VS_OK) s = load(path, c, err);
+  vs_status s = load(path, text, c, err);
   if (s != VS_OK) return s;
   if (*c->policy) d->policy = c->policy;
   if (*c->fallback) d->fallback = c->fallback;
@@ -61,4 +57,19 @@ vs_status vs_field_config_load(const char *path, vs_field_config *c, vs_error *e
                    path, strlen(c->key));
   if (*c->team && vs_cli_team("field.team =", c->team, &d->team, err) != VS_OK) return vs_fail_prefix(err, "%s", path);
   return VS_OK;
+}
+
+vs_status vs_field_config_load(const char *path, vs_field_config *c, vs_error *err) {
+  char found[512];
+  vs_status s = VS_OK;
+  if (!path) s = vs_path_find("deploy/config/field.ini", found, sizeof found, err);
+  if (s != VS_OK) return s;
+  s = take(path ? path : found, NULL, c, err);
+  snprintf(c->path, sizeof c->path, "%s", path ? path : found);
+  c->def.config_file = c->path;
+  return s;
+}
+
+vs_status vs_field_config_parse(const char *name, const char *text, vs_field_config *c, vs_error *err) {
+  return take(name, text, c, err);
 }

@@ -11,9 +11,12 @@ typedef struct vs_field_config {
   vs_vision_words vision;
   int radio_id[VS_TEAM_SIZE], team_id;
   char key[64];
+  char path[512]; // of the file
 } vs_field_config;
 
 // path NULL: deploy/config/field.ini of this program. attack stays "" where the file does not say.
 vs_status vs_field_config_load(const char *path, vs_field_config *out, vs_error *err);
+// The same from the text of such a file.
+vs_status vs_field_config_parse(const char *name, const char *text, vs_field_config *out, vs_error *err);
 
 #endif

@@ -35,6 +35,9 @@ vs_status replay_scan(vs_bus_log *log, const replay_def *def, replay_summary *ou
 void replay_print_summary(const char *path, const replay_summary *s, bool json);
 bool replay_wants(const vs_flag_list *wanted, const char *channel);
 
+// Computes a record of `vsss field --record` again and compares every turn. VS_FAIL: the first difference, or no such record.
+vs_status replay_check(vs_bus_log *log, const char *path, vs_error *err);
+
 // Draws the log's worlds into a video, in the time of the world.
 vs_status replay_video(vs_bus_log *log, const replay_summary *s, const char *path, int fps, vs_error *err);
 

@@ -1,5 +1,6 @@
 // Built in place of bus.c, bus_encode.c and bus_decode.c where LCM is not installed.
 #include "bus_internal.h"
+#include "vsss/tick.h"
 
 vs_status vs_bus_supported(vs_error *err) {
   return vs_fail(err, VS_FAIL, "this build has no LCM: install liblcm-dev and liblcm-bin and run make again");
@@ -68,5 +69,15 @@ size_t vs_message_encode(const vs_message *message, uint8_t *out, size_t out_siz
 vs_status vs_message_decode(vs_channel channel, const uint8_t *data, size_t size, vs_message *out,
                             uint8_t *image_buffer, vs_error *err) {
   (void)channel, (void)data, (void)size, (void)out, (void)image_buffer;
+  return vs_bus_supported(err);
+}
+
+size_t vs_tick_encode(const vs_tick *tick, int64_t utime_us, int64_t utime_capture_us, uint8_t *out, size_t size) {
+  (void)tick, (void)utime_us, (void)utime_capture_us, (void)out, (void)size;
+  return 0;
+}
+
+vs_status vs_tick_decode(const uint8_t *data, size_t size, vs_tick *out, vs_error *err) {
+  (void)data, (void)size, (void)out;
   return vs_bus_supported(err);
 }

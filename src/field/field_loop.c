@@ -7,6 +7,7 @@
 
 #include "eyes.h"
 #include "moved.h"
+#include "record.h"
 #include "tap.h"
 #include "vsss/clock.h"
 #include "vsss/control.h"
@@ -27,9 +28,13 @@ struct vs_field {
   int plays;              // which of them
   bool armed, rearm;      // the operator lets the robots move; and just said so again
   bool mindless;          // it failed and has not decided since
-  vs_sender *sender;
+  vs_sender *sender;      // NULL: a run computed again
   vs_tap tap;
-  vs_game game; // absolute frame
+  vs_record record;
+  vs_tick tick;   // what this turn was given so far; computed again: what it is given
+  int clock_used; // of its readings, computed again
+  bool dark;      // the camera is gone
+  vs_game game;   // absolute frame
   vs_safety safety;
   int64_t start_us, last_decision_us;
   int64_t step_us;           // moment of the world that control was stepped with last; 0: none yet
@@ -87,23 +92,26 @@ static vs_status get_calib(vs_field *f, char *note, size_t note_size, vs_error *
 }
 
 static vs_status open_eyes(vs_field *f, char *note, size_t note_size, vs_error *err) {
-  vs_status s = vs_eyes_open(&f->eyes, f->def.camera, &f->def.camera_def, err);
+  const vs_field_rerun *again = f->def.rerun;
+  vs_status s = again ? VS_OK : vs_eyes_open(&f->eyes, f->def.camera, &f->def.camera_def, err);
   if (s != VS_OK) return s;
+  if (again) f->eyes.info = (vs_camera_info){.width = again->width_px, .height = again->height_px};
   const vs_camera_info *info = &f->eyes.info;
   if (*info->note) add_note(note, note_size, info->note);
   s = get_calib(f, note, note_size, err);
   if (s != VS_OK) return s;
-  if (f->def.calib && (s = vs_moved_open(&f->moved, &f->calib, err)) != VS_OK) return s;
+  if (f->def.calib && !again && (s = vs_moved_open(&f->moved, &f->calib, err)) != VS_OK) return s;
   f->def.detector.adversary = f->def.team == VS_BLUE ? VS_YELLOW : VS_BLUE;
   f->def.detector.px_per_m = vs_calib_px_per_m(&f->calib, f->def.tracker.tag_height_m);
   f->def.tracker.team = f->def.team;
   vs_track_init(&f->tracker, &f->def.tracker);
-  return vs_detector_new(&f->def.detector, &f->detector, err);
+  return again ? VS_OK : vs_detector_new(&f->def.detector, &f->detector, err);
 }
 
 static vs_status open_brain(vs_field *f, const char *uri, vs_control **control, vs_error *err) {
   vs_player *player;
-  vs_status s = vs_player_open_isolated(uri, VS_FIELD_PATIENCE_MS, &player, err);
+  vs_status s = f->def.rerun ? vs_player_open_rerun(uri, &player, err)
+                             : vs_player_open_isolated(uri, VS_FIELD_PATIENCE_MS, &player, err);
   if (s != VS_OK) return s;
   s = vs_control_new(player, control, err);
   if (s != VS_OK) {
@@ -120,17 +128,20 @@ vs_status vs_field_new(const vs_field_def *def, vs_field **out, char *note, size
   if (!f) return vs_fail(err, VS_FAIL, "out of memory");
   f->def = *def;
   f->game.duration_s = def->duration_s;
-  f->came_us = vs_clock_monotonic_us();
+  f->came_us = def->rerun ? def->rerun->start_us : vs_clock_monotonic_us();
   f->armed = def->go;
-  vs_safety_init(&f->safety, vs_clock_monotonic_us());
+  vs_safety_init(&f->safety, f->came_us);
   // Before anything starts a thread: the players' processes are forked from here.
   vs_status s = open_brain(f, def->policy, &f->control[0], err);
   if (s == VS_OK && def->fallback) s = open_brain(f, def->fallback, &f->control[1], err);
   vs_sender_def radio = {.device = def->radio, .baud = def->baud, .key = def->key};
   memcpy(radio.id, def->radio_id, sizeof radio.id);
-  if (s == VS_OK) s = vs_sender_new(&radio, &f->sender, err);
+  if (s == VS_OK && !def->rerun) s = vs_sender_new(&radio, &f->sender, err);
   if (s == VS_OK) s = open_eyes(f, note, note_size, err);
   if (s == VS_OK) s = vs_tap_open(&f->tap, &f->def, &f->calib, note, note_size, err);
+  const vs_field_rerun start = {f->eyes.info.width, f->eyes.info.height, f->safety.since_us};
+  if (s == VS_OK && def->record) s = vs_record_open(&f->record, &f->def, &start, err);
+  f->tap.record = f->record.bus;
   if (s != VS_OK) {
     vs_field_free(f);
     return s;
@@ -143,11 +154,28 @@ void vs_field_free(vs_field *f) {
   if (!f) return;
   vs_sender_free(f->sender); // the robots stop first
   vs_tap_close(&f->tap);
+  vs_record_close(&f->record);
   vs_detector_free(f->detector);
   for (int i = 0; i < 2; i++) vs_control_free(f->control[i]);
   vs_moved_close(&f->moved);
   vs_eyes_close(&f->eyes);
   free(f);
+}
+
+// What is decided by time is decided by this: each reading is in the record, and a run computed again is given them.
+static int64_t clock_us(vs_field *f) {
+  vs_tick *t = &f->tick;
+  if (f->def.rerun) {
+    int i = f->clock_used++;
+    return i < t->n_clock ? t->clock_us[i] : 0; // 0: vs_field_again tells
+  }
+  int64_t now_us = vs_clock_monotonic_us();
+  if (t->n_clock < VS_TICK_CLOCKS) t->clock_us[t->n_clock++] = now_us;
+  return now_us;
+}
+
+static void send(vs_field *f, const vs_wheels wheels[VS_TEAM_SIZE], bool stop, int64_t moment_us, bool now) {
+  if (f->sender) vs_sender_command(f->sender, wheels, stop, moment_us, now);
 }
 
 static void count(vs_field *f, vs_stage stage, int64_t duration_us, int64_t now_us) {
@@ -168,7 +196,7 @@ void vs_field_arm(vs_field *f, bool go) {
   f->armed = go;
   if (go) return;
   const vs_wheels still[VS_TEAM_SIZE] = {{0}};
-  vs_sender_command(f->sender, still, true, vs_clock_monotonic_us(), true); // not only with the next frame
+  send(f, still, true, vs_clock_monotonic_us(), true); // not only with the next frame
 }
 
 static void obey_referee(vs_field *f, vs_event_kind kind) {
@@ -188,7 +216,16 @@ static bool is_armed(vs_field *f, int64_t now_us) {
 
 // What a referee said: where play restarts the past counts no more.
 static void hear_referee(vs_field *f, int64_t now_us) {
-  if (vs_tap_listen(&f->tap)) {
+  vs_tick *t = &f->tick;
+  if (f->def.rerun) {
+    f->tap.heard = t->referee;
+    f->tap.heard_us = t->heard ? t->heard_us : f->tap.heard_us;
+  } else {
+    t->heard = vs_tap_listen(&f->tap);
+    t->heard_us = f->tap.heard_us;
+    t->referee = f->tap.heard;
+  }
+  if (t->heard) {
     const vs_msg_referee *said = &f->tap.heard;
     f->stats.events++;
     f->game.last_event = said->event;
@@ -229,10 +266,10 @@ static void say(vs_field *f, vs_field_tick_result *r, const char *format, const 
 static void judge(vs_field *f, int64_t moment_us, vs_field_tick_result *r) {
   const vs_object *ball = &f->tracker.ball;
   int64_t hold_us = llround(1e6 * f->def.ball_hold_s);
-  int64_t now_us = vs_clock_monotonic_us();
+  int64_t now_us = clock_us(f);
   vs_safety_input in = {.now_us = now_us,
                         .armed = is_armed(f, now_us),
-                        .no_camera = !f->eyes.camera,
+                        .no_camera = f->dark,
                         .no_ball = hold_us > 0 && (!ball->ever || r->world.time_us - ball->seen_us > hold_us),
                         .no_player = f->mindless,
                         .referee = f->game.last_event.kind,
@@ -249,6 +286,7 @@ static void judge(vs_field *f, int64_t moment_us, vs_field_tick_result *r) {
 static void decide(vs_field *f, vs_field_tick_result *r) {
   double dt_s = f->step_us ? fmax(0.0, 1e-6 * (double)(r->world.time_us - f->step_us)) : 0.0;
   vs_error why = {0};
+  if (f->def.rerun && f->tick.player_failed) vs_player_fail_next(vs_control_player(f->control[f->plays]));
   vs_status s =
       vs_control_step(f->control[f->plays], f->def.team, &r->world, &f->game, dt_s, r->wheels, &r->decided, &why);
   if (r->world.time_us > f->step_us) f->step_us = r->world.time_us;
@@ -257,6 +295,7 @@ static void decide(vs_field *f, vs_field_tick_result *r) {
     if (r->decided) f->mindless = false;
     return;
   }
+  f->tick.player_failed = true;
   r->decided = false;
   if (!f->mindless) say(f, r, "%s; the robots are stopped", why.text);
   f->mindless = true;
@@ -270,7 +309,9 @@ static bool see(vs_field *f, const vs_frame *frame, vs_field_tick_result *r) {
   count_frame(f, frame);
   mark(f, VS_STAGE_CAMERA);
   vs_error why = {0};
-  if (vs_detect(f->detector, frame, &f->seen, &why) != VS_OK) {
+  if (f->def.rerun) {
+    vs_record_see_again(&f->tick, &f->seen);
+  } else if (vs_detect(f->detector, frame, &f->seen, &why) != VS_OK) {
     vs_eyes_lose(&f->eyes, why.text);
     return false;
   }
@@ -291,12 +332,13 @@ static void publish(vs_field *f, const vs_frame *frame, const vs_field_tick_resu
 
 static void publish_slowly(vs_field *f) {
   vs_radio_link link;
+  if (f->def.rerun) return;
   vs_sender_state(f->sender, &link, &f->stats.serial);
   vs_tap_slow(&f->tap, &f->stats, &link, f->second);
 }
 
 static void play(vs_field *f, const vs_frame *frame, vs_field_tick_result *r) {
-  int64_t age_us = vs_clock_monotonic_us() - frame->capture_us;
+  int64_t age_us = clock_us(f) - frame->capture_us;
   if (age_us > VS_FIELD_MAX_AGE_US) { // the last command ages too: the sender stops the robots if this goes on
     f->stats.too_old++;
     return;
@@ -304,7 +346,7 @@ static void play(vs_field *f, const vs_frame *frame, vs_field_tick_result *r) {
   decide(f, r);
   mark(f, VS_STAGE_CONTROL);
   judge(f, frame->capture_us, r);
-  vs_sender_command(f->sender, r->wheels, r->stop, frame->capture_us, r->decided || r->stop);
+  send(f, r->wheels, r->stop, frame->capture_us, r->decided || r->stop);
   mark(f, VS_STAGE_WRITE);
   r->age_us = f->mark_us - frame->capture_us;
   if (r->decided) {
@@ -328,9 +370,9 @@ static int64_t period_us(const vs_field *f) {
 // it ages as if it had been seen then, so that robots which nobody sees stop VS_TRACK_HOLD_US + VS_SAFETY_STALE_US after
 // the last frame at the latest; at once where the camera is known to be gone.
 static void play_blind(vs_field *f, vs_field_tick_result *r) {
-  int64_t next_us = f->step_us + period_us(f), now_us = vs_clock_monotonic_us();
+  int64_t next_us = f->step_us + period_us(f), now_us = clock_us(f);
   hear_referee(f, now_us);
-  r->bridged = f->eyes.camera && f->step_us && now_us >= f->awake_us && next_us <= now_us &&
+  r->bridged = !f->dark && f->step_us && now_us >= f->awake_us && next_us <= now_us &&
                next_us - f->tracker.time_us <= VS_TRACK_HOLD_US;
   f->awake_us = now_us + period_us(f);
   vs_track_world(&f->tracker, r->bridged ? next_us : f->step_us, &r->world);
@@ -340,7 +382,7 @@ static void play_blind(vs_field *f, vs_field_tick_result *r) {
     if (r->decided) count_decision(f, next_us);
   }
   judge(f, f->step_us, r);
-  if (r->bridged || r->stop) vs_sender_command(f->sender, r->wheels, r->stop, f->step_us, r->decided || r->stop);
+  if (r->bridged || r->stop) send(f, r->wheels, r->stop, f->step_us, r->decided || r->stop);
   if (r->bridged || r->stop) publish(f, NULL, r);
   publish_slowly(f);
 }
@@ -353,26 +395,76 @@ static int wait_ms(const vs_field *f) {
   return left_us <= 0 ? 0 : left_us < 1000 * WAIT_MS ? (int)((left_us + 999) / 1000) : WAIT_MS;
 }
 
+// The turn itself, with or without a frame.
+static void turn(vs_field *f, const vs_frame *frame, vs_field_tick_result *r) {
+  if (frame) {
+    f->came_us = clock_us(f);
+    f->awake_us = f->came_us + period_us(f) * 3 / 2;
+    play(f, frame, r);
+  } else {
+    play_blind(f, r);
+  }
+}
+
+static void keep(vs_field *f, const vs_frame *frame, const vs_field_tick_result *r) {
+  vs_tick *t = &f->tick;
+  t->frame = frame != NULL;
+  t->fps = f->eyes.info.fps;
+  t->camera = !f->dark;
+  if (frame) {
+    t->capture_us = frame->capture_us;
+    t->frame_seq = frame->seq;
+    vs_record_seen(&f->seen, t);
+  }
+  t->decided = r->decided;
+  t->stop = r->stop;
+  t->safety = r->safety;
+  t->world_hash = vs_world_hash(VS_HASH_START, &r->world);
+  memcpy(t->wheels, r->wheels, sizeof t->wheels);
+  vs_record_tick(&f->record, t);
+}
+
 vs_status vs_field_tick(vs_field *f, vs_field_tick_result *r, vs_error *err) {
   memset(r, 0, sizeof *r);
+  memset(&f->tick, 0, sizeof f->tick);
   vs_frame frame;
   int64_t lost = f->eyes.lost, reopened = f->eyes.reopened;
   vs_status s = vs_eyes_read(&f->eyes, wait_ms(f), &frame, &r->got, err);
   if (s != VS_OK || r->got == VS_CAMERA_END) return s;
+  f->tick.armed = f->armed;
+  f->tick.rearm = f->rearm;
   if (r->got == VS_CAMERA_FRAME && !see(f, &frame, r)) r->got = VS_CAMERA_TIMEOUT;
-  if (!f->eyes.camera && (f->eyes.lost != lost || strcmp(f->eyes.why, f->why_dark)))
+  f->dark = !f->eyes.camera;
+  if (f->dark && (f->eyes.lost != lost || strcmp(f->eyes.why, f->why_dark)))
     say(f, r, "camera gone: %s; the robots are stopped, looking for it", f->eyes.why);
   snprintf(f->why_dark, sizeof f->why_dark, "%s", f->eyes.why);
   if (f->eyes.reopened != reopened) say(f, r, "camera back: %s", f->eyes.info.name);
-  if (r->got == VS_CAMERA_FRAME) {
-    f->came_us = vs_clock_monotonic_us();
-    f->awake_us = f->came_us + period_us(f) * 3 / 2;
-    play(f, &frame, r);
-  } else {
-    play_blind(f, r);
-  }
+  const vs_frame *got = r->got == VS_CAMERA_FRAME ? &frame : NULL;
+  turn(f, got, r);
+  if (f->record.bus) keep(f, got, r);
   r->silent_us = vs_clock_monotonic_us() - f->came_us;
   return VS_OK;
+}
+
+vs_status vs_field_again(vs_field *f, const vs_tick *tick, vs_tick *again, vs_error *err) {
+  vs_field_tick_result r = {.got = tick->frame ? VS_CAMERA_FRAME : VS_CAMERA_TIMEOUT};
+  vs_frame frame = {.capture_us = tick->capture_us,
+                    .seq = tick->frame_seq,
+                    .width = f->eyes.info.width,
+                    .height = f->eyes.info.height};
+  f->tick = *tick;
+  f->clock_used = 0;
+  f->armed = tick->armed;
+  f->rearm = tick->rearm;
+  f->dark = !tick->camera;
+  f->eyes.info.fps = tick->fps;
+  if (tick->frame) see(f, &frame, &r);
+  turn(f, tick->frame ? &frame : NULL, &r);
+  keep(f, tick->frame ? &frame : NULL, &r);
+  *again = f->tick;
+  if (f->clock_used == tick->n_clock) return VS_OK;
+  return vs_fail(err, VS_FAIL, "turn %d looked at the clock %d times, the recorded one %d times", tick->seq,
+                 f->clock_used, tick->n_clock);
 }
 
 void vs_field_get_stats(vs_field *f, vs_field_stats *out) {
@@ -381,6 +473,7 @@ void vs_field_get_stats(vs_field *f, vs_field_stats *out) {
   memcpy(f->stats.robot, link.robot, sizeof f->stats.robot);
   f->stats.track = f->tracker.stats;
   f->stats.lost_messages = vs_tap_lost(&f->tap);
+  f->stats.lost_record = f->record.lost;
   f->stats.camera_lost = f->eyes.lost;
   f->stats.camera_reopened = f->eyes.reopened;
   f->stats.player_failures = 0;

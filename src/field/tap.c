@@ -12,6 +12,10 @@
 static void referee_spoke(const vs_message *message, void *user) {
   vs_tap *tap = user;
   tap->heard = message->as.referee;
+  if (tap->record) {
+    tap->message = *message;
+    vs_bus_publish(tap->record, &tap->message, NULL);
+  }
   tap->heard_us = vs_clock_monotonic_us();
   tap->news = true;
 }
@@ -72,7 +76,8 @@ static void send(vs_tap *tap, vs_channel channel, int64_t capture_us) {
   m->utime_us = 0;
   m->utime_capture_us = epoch_us(capture_us);
   m->seq = tap->seq[channel]++;
-  if (vs_bus_publish(tap->bus, m, NULL) != VS_OK) tap->lost++;
+  if (tap->bus && vs_bus_publish(tap->bus, m, NULL) != VS_OK) tap->lost++;
+  if (tap->record) vs_bus_publish(tap->record, m, NULL); // what cannot be written is counted with the turns
 }
 
 static void put_tag(const vs_tap *tap, const vs_tag *from, vs_msg_tag *to) {
@@ -100,7 +105,7 @@ static void put_blobs(const vs_tap *tap, vs_msg_detections *m, vs_blob_kind kind
 
 void vs_tap_frame(vs_tap *tap, const vs_world *world, const vs_game *game, const vs_detections *seen, int width_px,
                   int height_px) {
-  if (!tap->bus) return;
+  if (!tap->bus && !tap->record) return;
   tap->message.as.world = (vs_msg_world){.world = *world, .game = *game, .asks_team = -1};
   send(tap, VS_CH_STATE, world->time_us);
 
@@ -116,7 +121,7 @@ void vs_tap_frame(vs_tap *tap, const vs_world *world, const vs_game *game, const
 }
 
 void vs_tap_command(vs_tap *tap, const vs_world *world, const vs_wheels wheels[VS_TEAM_SIZE], bool stop) {
-  if (!tap->bus) return;
+  if (!tap->bus && !tap->record) return;
   vs_msg_cmd *cmd = &tap->message.as.cmd;
   cmd->team = tap->team;
   memcpy(cmd->wheels, wheels, sizeof cmd->wheels);
@@ -127,7 +132,7 @@ void vs_tap_command(vs_tap *tap, const vs_world *world, const vs_wheels wheels[V
 }
 
 void vs_tap_decision(vs_tap *tap, const vs_control *control, const vs_world *world) {
-  if (!tap->bus) return;
+  if (!tap->bus && !tap->record) return;
   vs_msg_policy *m = &tap->message.as.policy;
   m->team = tap->team;
   m->contract_hash = vs_contract_hash();
@@ -178,13 +183,13 @@ static void send_stats(vs_tap *tap, const vs_field_stats *all, const vs_histogra
 
 void vs_tap_slow(vs_tap *tap, const vs_field_stats *all, const vs_radio_link *link, vs_histogram second[VS_STAGES]) {
   int64_t now_us = vs_clock_monotonic_us();
-  if (tap->bus && now_us - tap->radio_us >= RADIO_PERIOD_US) {
+  if ((tap->bus || tap->record) && now_us - tap->radio_us >= RADIO_PERIOD_US) {
     tap->radio_us = now_us;
     send_radio(tap, all, link, now_us);
   }
   if (now_us - tap->stats_us < STATS_PERIOD_US) return;
   tap->stats_us = now_us;
-  if (tap->bus) send_stats(tap, all, second, now_us);
+  if (tap->bus || tap->record) send_stats(tap, all, second, now_us);
   memset(second, 0, VS_STAGES * sizeof *second);
 }
 

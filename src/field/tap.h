@@ -10,6 +10,7 @@
 
 typedef struct vs_tap {
   vs_bus *bus;           // NULL: nobody listens
+  vs_bus *record;        // gets the same messages; NULL: there is none
   vs_pictures *pictures; // NULL: none are sent
   vs_team team;
   const char *policy, *radio; // the definition's

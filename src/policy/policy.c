@@ -174,6 +174,10 @@ vs_status vs_player_of_remote(const char *uri, const vs_player_remote *calls, vo
   return VS_OK;
 }
 
+void *vs_player_handle(vs_player *player, const vs_player_remote *calls) {
+  return player->remote == calls ? player->handle : NULL;
+}
+
 int64_t vs_player_failures(const vs_player *player) {
   return player->remote ? player->remote->failures(player->handle) : 0;
 }

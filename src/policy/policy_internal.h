@@ -38,6 +38,8 @@ typedef struct vs_player_remote {
 vs_status vs_player_of_remote(const char *uri, const vs_player_remote *calls, void *handle,
                               const vs_player_about *about, vs_player **out, vs_error *err);
 
+void *vs_player_handle(vs_player *player, const vs_player_remote *calls); // NULL: not one of these calls
+
 // Built-in players.
 extern const vsss_player_api vs_player_emc, vs_player_inf, vs_player_emc22, vs_player_random, vs_player_zero;
 

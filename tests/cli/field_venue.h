@@ -120,7 +120,8 @@ static inline void start_field(venue *v, const char *flags) {
   char arguments[1024];
   // Where a referee says go and stop the robots wait for it.
   const char *go = strstr(flags, "--referee") ? "" : "--go ";
-  snprintf(arguments, sizeof arguments, "field %s--no-lcm --camera rig:%s --radio %s %s", go, v->camera_path,
+  const char *lcm = strstr(flags, "--lcm ") ? "" : "--no-lcm ";
+  snprintf(arguments, sizeof arguments, "field %s%s--camera rig:%s --radio %s %s", go, lcm, v->camera_path,
            v->radio_path, flags);
   v->field = vsss_start(v->log_path, arguments);
 }
