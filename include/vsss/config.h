@@ -17,7 +17,8 @@ typedef enum vs_config_type {
   VS_CONFIG_REAL,
   VS_CONFIG_BOOL,
   VS_CONFIG_TEXT,
-  VS_CONFIG_SEED
+  VS_CONFIG_SEED,
+  VS_CONFIG_ALIAS // an older name of a key; only name and help count, and help is the name the key has now
 } vs_config_type;
 
 // One key of a schema. Keys of an INI section are written "section.key". The value is stored at target, which is an

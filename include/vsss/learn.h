@@ -30,7 +30,7 @@ typedef struct vs_train_def {
   // Opponents (src/learn/league.h).
   char opponent[256]; // mix, such as "self=0.6,pool=0.4"
   double replace_score;
-  bool window_of_zeros;
+  bool score_window_zero_filled; // the paper's window of results: zeros at first, never cleared
   int pool_size, pool_every;
   // Reward: a preset (dense, goals, paper) and changes, such as "dense,approach=0.3"; shifts linearly from the first to
   // the second between the two numbers of transitions.
@@ -42,16 +42,16 @@ typedef struct vs_train_def {
   bool clip_value, value_scale;            // value_scale: the critic works in units of the returns' deviation
   double learning_rate, learning_rate_end; // linear over transitions_m
   double adam_epsilon, max_gradient_norm;
-  int epochs, minibatch, pieces;
+  int epochs, minibatch, microbatches;
   bool canonical; // the networks see one of the 24 symmetric versions of an observation (vsss/observe.h)
   // ONNX files: the mean over all 24 versions in place of one answer, and another gain (0: action_gain). An average is
   // smaller than what it is the average of.
   bool export_average;
   double export_gain;
-  double action_gain; // action = action_gain times what the policy draws from [-1, 1], clipped
-  char hidden[64];    // layer sizes, such as "256,256"
-  double first_shape;
-  char learner[16]; // own or torch
+  double action_gain;           // action = action_gain times what the policy draws from [-1, 1], clipped
+  char hidden[64];              // layer sizes, such as "256,256"
+  double initial_concentration; // alpha = beta of the untrained policy's Beta distributions; > 1
+  char learner[16];             // own or torch
   // Of the products in the own learner's backward pass: fp32, bf16 (needs oneDNN and AVX512-BF16), or auto: both are
   // timed when the run begins and the faster one becomes its setting.
   char precision[16];
@@ -63,8 +63,8 @@ vs_train_def vs_train_def_default(void); // our best recipe
 // "default", or "paper" (Table 2 and what paper.md adds). VS_USAGE lists the presets.
 vs_status vs_train_def_preset(const char *name, vs_train_def *out, vs_error *err);
 
-// One row per setting, with its allowed range, targets inside def; ended by a NULL name.
-#define VS_TRAIN_KEYS_MAX 48
+// One row per setting, with its allowed range, and one per name that a setting had before, targets inside def; ended by a NULL name.
+#define VS_TRAIN_KEYS_MAX 56
 void vs_train_schema(vs_train_def *def, vs_config_key keys[VS_TRAIN_KEYS_MAX]);
 // All settings as lines "key = value", as an INI file, with a comment over each if asked for; returns the length it would
 // need. VS_TRAIN_TEXT_MAX is enough for any.

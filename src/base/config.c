@@ -32,6 +32,7 @@ static const vs_config_key *nearest(const char *name, const vs_config_key *schem
   const vs_config_key *best = NULL;
   int best_distance = 1 << 20;
   for (const vs_config_key *k = schema; k->name; k++) {
+    if (k->type == VS_CONFIG_ALIAS) continue;
     int d = edit_distance(name, k->name);
     if (d < best_distance) best_distance = d, best = k;
   }
@@ -64,10 +65,15 @@ static vs_status store_number(const char *where, const vs_config_key *k, const c
   return VS_OK;
 }
 
-static vs_status store(const char *where, const char *name, const char *value, const vs_config_key *schema,
-                       vs_error *err) {
+static const vs_config_key *find(const char *name, const vs_config_key *schema) {
   const vs_config_key *k = schema;
   while (k->name && strcmp(k->name, name) != 0) k++;
+  return k->name && k->type == VS_CONFIG_ALIAS ? find(k->help, schema) : k;
+}
+
+static vs_status store(const char *where, const char *name, const char *value, const vs_config_key *schema,
+                       vs_error *err) {
+  const vs_config_key *k = find(name, schema);
   if (!k->name) {
     const vs_config_key *near = nearest(name, schema);
     return vs_fail(err, VS_USAGE, "%s: unknown key '%s' (did you mean '%s'?)", where, name, near ? near->name : "?");
@@ -91,6 +97,7 @@ static vs_status store(const char *where, const char *name, const char *value, c
       return vs_fail(err, VS_USAGE, "%s: %s: longer than %zu characters", where, name, k->text_size - 1);
     memcpy(k->target, value, strlen(value) + 1);
     return VS_OK;
+  case VS_CONFIG_ALIAS: break;
   }
   return vs_fail(err, VS_FAIL, "%s: %s: unknown type in the schema", where, name);
 }

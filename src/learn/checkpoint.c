@@ -15,7 +15,7 @@
 // What a checkpoint holds, and the versions of it (archive.h). The league's are in league_file.c. Adam's m and v are
 // called mean and square in the file, as they were in the first release.
 static const vs_section contract_section = {"contract", 1, 1};
-static const vs_section settings_section = {"settings", 1, 1};
+static const vs_section settings_section = {"settings", 1, 2}; // 2: names of before are read, not written
 static const vs_section counters_section = {"counters", 1, 1};
 static const vs_section parameters_section = {"parameters", 1, 1};
 static const vs_section m_section = {"mean", 1, 1};
@@ -154,6 +154,7 @@ vs_status vs_train_read_def(const char *path, vs_train_def *out, vs_error *err) 
     vs_train_def_before(out);
     vs_train_schema(out, keys);
     s = vs_config_parse(used, text, keys, err);
+    if (s != VS_OK) s = vs_fail_prefix(err, "a setting of a newer vsss");
   }
   vs_bytes_free(&archive);
   return s;

@@ -200,7 +200,7 @@ void vs_league_episode_over(vs_league *league, int index, int goals_for, int goa
 vs_league_window vs_league_results(const vs_league *league) {
   vs_league_window out = {.room = VS_LEAGUE_WINDOW};
   for (int i = 0; i < league->window_filled; i++) out.sum += league->window[i];
-  out.count = league->def.window_of_zeros ? VS_LEAGUE_WINDOW : league->window_filled;
+  out.count = league->def.score_window_zero_filled ? VS_LEAGUE_WINDOW : league->window_filled;
   return out;
 }
 
@@ -213,7 +213,7 @@ static vs_status replace_frozen(vs_league *league, const float *actor, vs_error 
   if (place < 0) return vs_fail(err, VS_FAIL, "out of memory for a frozen opponent");
   league->frozen = place;
   league->replacements++;
-  if (!league->def.window_of_zeros) league->window_at = league->window_filled = 0;
+  if (!league->def.score_window_zero_filled) league->window_at = league->window_filled = 0;
   release_unused(league);
   return VS_OK;
 }

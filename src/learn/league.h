@@ -34,9 +34,10 @@ typedef struct vs_league_def {
   int shares;
   vs_league_share share[VS_LEAGUE_KINDS_MAX];
   double replace_score; // FROZEN: mean goal difference at which the current weights take its place (paper: 0.6)
-  bool window_of_zeros; // paper's rule: the window starts as zeros and is never cleared; else it must fill first
-  int pool_size;        // selves kept
-  int pool_every;       // updates between two additions to the pool
+  bool
+      score_window_zero_filled; // paper's rule: the window starts as zeros and is never cleared; else it must fill first
+  int pool_size;                // selves kept
+  int pool_every;               // updates between two additions to the pool
 } vs_league_def;
 
 // "frozen", "self=0.5,pool=0.3,emc:=0.2": kinds or URIs with weights (1 where none is given).

@@ -33,10 +33,10 @@ static vs_learner_def learner_def(const vs_train_def *def, const vs_net_shape *s
                           .adam_beta2 = 0.999,
                           .adam_epsilon = def->adam_epsilon,
                           .max_gradient_norm = def->max_gradient_norm,
-                          .initial_concentration = def->first_shape,
+                          .initial_concentration = def->initial_concentration,
                           .epochs = def->epochs,
                           .minibatch = def->minibatch,
-                          .microbatches = def->pieces};
+                          .microbatches = def->microbatches};
 }
 
 // precision = auto becomes the faster one, and the run's setting: a run that is resumed computes as it began. Ranks that
@@ -92,7 +92,7 @@ static vs_status make_learner(vs_train *t, vs_error *err) {
 
 static vs_status make_league_and_rollout(vs_train *t, vs_error *err) {
   vs_league_def league = {.replace_score = t->def.replace_score,
-                          .window_of_zeros = t->def.window_of_zeros,
+                          .score_window_zero_filled = t->def.score_window_zero_filled,
                           .pool_size = t->def.pool_size,
                           .pool_every = t->def.pool_every};
   vs_net actor;

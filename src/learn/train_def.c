@@ -49,13 +49,13 @@ vs_train_def vs_train_def_default(void) {
       .max_gradient_norm = 0.5,
       .epochs = 3,
       .minibatch = 1024,
-      .pieces = 4,
+      .microbatches = 4,
       .canonical = false,
       .action_gain = 1.0,
       .export_average = true,
       .export_gain = 2.0,
       .hidden = "256,256",
-      .first_shape = 4.0,
+      .initial_concentration = 4.0,
       .learner = "own",
       .precision = "auto",
       .transitions_m = 60.0,
@@ -88,7 +88,7 @@ static vs_train_def paper(void) {
   without_levers(&def);
   snprintf(def.opponent, sizeof def.opponent, "frozen");
   def.replace_score = 0.6;
-  def.window_of_zeros = true;
+  def.score_window_zero_filled = true;
   snprintf(def.reward, sizeof def.reward, "paper");
   snprintf(def.reward_end, sizeof def.reward_end, "paper");
   def.anneal_from_m = def.anneal_to_m = 0.0;
@@ -99,7 +99,7 @@ static vs_train_def paper(void) {
   def.learning_rate = def.learning_rate_end = 4e-4;
   def.epochs = 5;
   def.minibatch = 4280;
-  def.first_shape = 1.6931471805599453; // zero bias: 1 + softplus(0)
+  def.initial_concentration = 1.6931471805599453; // zero bias: 1 + softplus(0)
   def.transitions_m = 160.0;
   return def;
 }
@@ -123,6 +123,8 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
   { #field, VS_CONFIG_REAL, &d->field, 0, min, max, help }
 #define SWITCH(field, help)                                                                                            \
   { #field, VS_CONFIG_BOOL, &d->field, 0, 0, 0, help }
+#define ALIAS(old, now)                                                                                                \
+  { #old, VS_CONFIG_ALIAS, NULL, 0, 0, 0, #now }
   const vs_config_key rows[] = {
       TEXT(drive, "planar (fast) or contact (the reference)"),
       TEXT(realism, "INI file of sensors and dynamics, drawn anew each episode"),
@@ -140,7 +142,7 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       {"seed", VS_CONFIG_SEED, &d->seed, 0, 0, 0, "everything random follows from it"},
       TEXT(opponent, "mix of self, frozen, pool and players, such as self=0.6,pool=0.4"),
       REAL(replace_score, -10, 10, "frozen: mean goal difference at which it is replaced"),
-      SWITCH(window_of_zeros, "frozen: the paper's window of 100 results, never cleared"),
+      SWITCH(score_window_zero_filled, "frozen: the paper's window of 100 results, zeros at first and never cleared"),
       WHOLE(pool_size, 1, 1000, "pool: earlier selves kept"),
       WHOLE(pool_every, 1, 1000000, "pool: updates between two additions"),
       TEXT(reward, "paper, dense or goals, then term=weight"),
@@ -160,22 +162,27 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       REAL(max_gradient_norm, 1e-3, 1e6, "gradients are scaled down to it"),
       WHOLE(epochs, 1, 100, "passes over a batch"),
       WHOLE(minibatch, 16, 10000000, "rows of one gradient"),
-      WHOLE(pieces, 1, 64, "parts a minibatch is computed in (results depend on it, not on threads)"),
+      WHOLE(microbatches, 1, 64, "parts a minibatch is computed in (results depend on it, not on threads)"),
       SWITCH(canonical, "networks see the canonical one of an observation's mirror images and numberings"),
       REAL(action_gain, 1, 4, "the policy's output times this, clipped, is the wheel command"),
       SWITCH(export_average, "policy files ask the network about all 24 symmetric versions and take the mean"),
       REAL(export_gain, 0, 4, "action_gain of policy files; 0: as in training"),
       TEXT(hidden, "layer sizes of both networks"),
-      REAL(first_shape, 1.01, 100, "alpha = beta of the untrained policy"),
+      REAL(initial_concentration, 1.01, 100, "alpha = beta of the untrained policy's Beta distributions"),
       TEXT(learner, "own (kernels over BLAS) or torch"),
       TEXT(precision, "own learner's backward pass: fp32, bf16, or auto: the faster one here, tried at the start"),
       REAL(transitions_m, 0, 1e9, "millions of transitions to stop at; 0: until stopped"),
+      // Names of 0.1.0, in its checkpoints and in scripts.
+      ALIAS(pieces, microbatches),
+      ALIAS(first_shape, initial_concentration),
+      ALIAS(window_of_zeros, score_window_zero_filled),
       {.name = NULL},
   };
 #undef TEXT
 #undef WHOLE
 #undef REAL
 #undef SWITCH
+#undef ALIAS
   _Static_assert(sizeof rows / sizeof *rows <= VS_TRAIN_KEYS_MAX, "raise VS_TRAIN_KEYS_MAX");
   memcpy(keys, rows, sizeof rows);
 }
@@ -208,6 +215,7 @@ size_t vs_train_def_text(const vs_train_def *def, bool comments, char *out, size
   size_t used = 0;
   for (const vs_config_key *k = keys; k->name; k++) {
     char line[768], quoted[640];
+    if (k->type == VS_CONFIG_ALIAS) continue;
     if (comments) comment(k, line, sizeof line), add_text(line, out, size, &used);
     switch (k->type) {
     case VS_CONFIG_INT: snprintf(line, sizeof line, "%s = %d\n", k->name, *(int *)k->target); break;
@@ -220,6 +228,7 @@ size_t vs_train_def_text(const vs_train_def *def, bool comments, char *out, size
       vs_config_quote(k->target, quoted, sizeof quoted);
       snprintf(line, sizeof line, "%s = %s\n", k->name, quoted);
       break;
+    case VS_CONFIG_ALIAS: break;
     }
     add_text(line, out, size, &used);
   }

@@ -18,6 +18,7 @@ static const vs_config_key schema[] = {
     {"train.rate", VS_CONFIG_REAL, &value.rate, 0, 0, 0, "learning rate"},
     {"noise", VS_CONFIG_BOOL, &value.noise, 0, 0, 0, "sensor noise"},
     {"name", VS_CONFIG_TEXT, value.name, sizeof value.name, 0, 0, "of the run"},
+    {"train.matches", VS_CONFIG_ALIAS, NULL, 0, 0, 0, "train.envs"},
     {NULL, VS_CONFIG_INT, NULL, 0, 0, 0, NULL},
 };
 
@@ -41,6 +42,15 @@ static void refused(const char *text, const char *message) {
 static void unknown_key_names_file_line_key_and_the_nearest(void **state) {
   (void)state;
   refused("[train]\n\nenv = 3\n", "a.ini:3: unknown key 'train.env' (did you mean 'train.envs'?)");
+}
+
+static void an_older_name_sets_the_key_as_it_is_called_now(void **state) {
+  (void)state;
+  assert_ok(vs_config_parse("a.ini", "[train]\nmatches = 30\n", schema, err));
+  assert_int_equal(value.envs, 30);
+  refused("[train]\nmatches = 0\n", "a.ini:2: train.envs = 0: allowed are 1 to 1000");
+  refused("[train]\nmatche = 3\n",
+          "unknown key 'train.matche' (did you mean 'train.rate'?)"); // old names are not proposed
 }
 
 static void bad_values_name_the_value_and_what_is_allowed(void **state) {
@@ -101,6 +111,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sections_comments_and_all_types_are_read),
       cmocka_unit_test(unknown_key_names_file_line_key_and_the_nearest),
+      cmocka_unit_test(an_older_name_sets_the_key_as_it_is_called_now),
       cmocka_unit_test(bad_values_name_the_value_and_what_is_allowed),
       cmocka_unit_test(a_quoted_value_holds_any_character),
       cmocka_unit_test(a_key_sign_in_a_comment_is_no_key),

@@ -31,7 +31,7 @@ static vs_train_def tiny_def(void) {
   def.pool_size = 2;
   def.threads = 1;
   def.replace_score = -1.0; // replaced whenever its window is full
-  def.window_of_zeros = true;
+  def.score_window_zero_filled = true;
   return def;
 }
 

@@ -18,7 +18,7 @@ static vs_status after_update(vs_league *league, long long update, bool *replace
 }
 
 static vs_league_def paper_rule(void) {
-  vs_league_def def = {.replace_score = 0.6, .window_of_zeros = true, .pool_size = 3, .pool_every = 1};
+  vs_league_def def = {.replace_score = 0.6, .score_window_zero_filled = true, .pool_size = 3, .pool_every = 1};
   assert_ok(vs_league_parse("frozen", &def, err));
   return def;
 }
@@ -83,7 +83,7 @@ static void the_opponent_stays_the_same_for_a_whole_episode(void **state) {
 static void no_result_is_credited_across_a_swap(void **state) {
   (void)state;
   vs_league_def def = paper_rule();
-  def.window_of_zeros = false; // cleared at a swap
+  def.score_window_zero_filled = false; // cleared at a swap
   vs_league league;
   bool replaced;
   assert_ok(vs_league_init(&league, &def, 2, SIZE, first, 1, err));
@@ -102,7 +102,7 @@ static void no_result_is_credited_across_a_swap(void **state) {
 static void a_window_that_is_not_full_replaces_nobody(void **state) {
   (void)state;
   vs_league_def def = paper_rule();
-  def.window_of_zeros = false;
+  def.score_window_zero_filled = false;
   vs_league league;
   bool replaced;
   assert_ok(vs_league_init(&league, &def, 1, SIZE, first, 1, err));

@@ -51,6 +51,30 @@ static void settings_read_back_as_they_were_written(void **state) {
   assert_true(read.value_scale);
 }
 
+static void names_of_the_first_release_are_still_read(void **state) {
+  (void)state;
+  vs_train_def def;
+  vs_config_key keys[VS_TRAIN_KEYS_MAX];
+  char text[VS_TRAIN_TEXT_MAX];
+  assert_ok(vs_train_def_preset("default", &def, err));
+  vs_train_schema(&def, keys);
+  assert_ok(vs_config_parse("text", "pieces = 7\nfirst_shape = 2.5\n", keys, err));
+  assert_ok(vs_config_set("window_of_zeros=true", keys, err));
+  assert_int_equal(def.microbatches, 7);
+  assert_near(def.initial_concentration, 2.5, 0.0);
+  assert_true(def.score_window_zero_filled);
+  // What is written has the present names only.
+  vs_train_def_text(&def, true, text, sizeof text);
+  assert_non_null(strstr(text, "\nmicrobatches = 7\n"));
+  assert_non_null(strstr(text, "\ninitial_concentration = 2.5\n"));
+  assert_non_null(strstr(text, "\nscore_window_zero_filled = true\n"));
+  static const char *const old[] = {"pieces =", "first_shape", "window_of_zeros"};
+  for (int i = 0; i < 3; i++) assert_null(strstr(text, old[i]));
+  vs_error err = {0};
+  assert_int_equal(vs_config_set("pieces=65", keys, &err), VS_USAGE);
+  assert_string_equal(err.text, "command line: microbatches = 65: allowed are 1 to 64");
+}
+
 static void every_preset_passes_its_own_check(void **state) {
   (void)state;
   static const char *const names[] = {"default", "paper"};
@@ -90,6 +114,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_paper_preset_is_table_2),
       cmocka_unit_test(settings_read_back_as_they_were_written),
+      cmocka_unit_test(names_of_the_first_release_are_still_read),
       cmocka_unit_test(every_preset_passes_its_own_check),
       cmocka_unit_test(a_reward_is_a_preset_and_changes),
       cmocka_unit_test(the_schedule_is_linear_between_its_ends),

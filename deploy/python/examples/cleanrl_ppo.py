@@ -41,7 +41,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     a = parser.parse_args()
     torch.manual_seed(a.seed)
-    gamma, gae, clip, epochs, pieces = 0.95, 0.95, 0.2, 4, 4
+    gamma, gae, clip, epochs, minibatches = 0.95, 0.95, 0.2, 4, 4
 
     reward = "goals,approach=1,progress=1,own_distance=0.1"
     env = vsss.make_vec(a.envs, opponent=a.opponent, observation="frame", reward=reward, episode_s=15)
@@ -79,8 +79,8 @@ def main() -> None:
         returns = (advantages + values).flatten()
         flat = [obs.reshape(-1, inputs), actions.reshape(-1, 2), log_probs.flatten(), advantages.flatten(), returns]
         for _ in range(epochs):
-            for piece in torch.randperm(len(returns)).chunk(pieces):
-                o, act, old, gain, target = (x[piece] for x in flat)
+            for minibatch in torch.randperm(len(returns)).chunk(minibatches):
+                o, act, old, gain, target = (x[minibatch] for x in flat)
                 _, new, entropy, value = agent.act(o, act)
                 ratio, gain = (new - old).exp(), (gain - gain.mean()) / (gain.std() + 1e-8)
                 loss = -torch.min(ratio * gain, ratio.clamp(1 - clip, 1 + clip) * gain).mean()
