@@ -3,10 +3,13 @@
 #ifndef VSSS_TESTS_RUN_VSSS_H
 #define VSSS_TESTS_RUN_VSSS_H
 
+#include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 typedef struct vsss_run {
@@ -58,6 +61,49 @@ static inline void vsss(vsss_run *run, const char *arguments) {
   vsss_read_all(err, run->err, sizeof run->err);
   fclose(out);
   fclose(err);
+}
+
+// Starts it in the background; both outputs go to the file log. Returns the process.
+static inline pid_t vsss_start(const char *log, const char *arguments) {
+  char binary[4096], command[8192];
+  vsss_binary(binary, sizeof binary);
+  snprintf(command, sizeof command, "exec '%s' %s", binary, arguments);
+  unlink(log); // nobody shall read what the one before said
+  fflush(NULL);
+  pid_t child = fork();
+  if (child) return child;
+  int out = open(log, O_CREAT | O_TRUNC | O_WRONLY, 0600);
+  dup2(out, STDOUT_FILENO);
+  dup2(out, STDERR_FILENO);
+  execl("/bin/sh", "sh", "-c", command, (char *)NULL);
+  _exit(127);
+}
+
+// Exit status, 128 + signal, or -1 where it did not end in time (it is then killed).
+static inline int vsss_wait(pid_t child, int seconds) {
+  int status;
+  for (int i = 0; i < 100 * seconds; i++) {
+    if (waitpid(child, &status, WNOHANG) == child)
+      return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    nanosleep(&(struct timespec){0, 10000000}, NULL);
+  }
+  kill(child, SIGKILL);
+  waitpid(child, &status, 0);
+  return -1;
+}
+
+// The same for one that shall end by itself or by the signal (0: none).
+static inline int vsss_finish(pid_t child, int signal_number) {
+  if (signal_number) kill(child, signal_number);
+  return vsss_wait(child, 300);
+}
+
+// The folder of the sources.
+static inline void vsss_sources(char *path, size_t size) {
+  vsss_binary(path, size);
+  char *cut = strstr(path, "/build/");
+  if (!cut) cut = strrchr(path, '/');
+  *cut = '\0';
 }
 
 // The call fails with this status, says exactly one line on standard error, and the line holds the text.

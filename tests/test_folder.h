@@ -13,6 +13,18 @@ static inline int make_folder(void **state) {
   return mkdtemp(folder) ? 0 : -1;
 }
 
+// What is in the folder's file, as far as it fits; "" where there is none. Good until the next call.
+static inline const char *folder_file(const char *name) {
+  static char text[65536];
+  char path[256];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *f = fopen(path, "r");
+  size_t n = f ? fread(text, 1, sizeof text - 1, f) : 0;
+  if (f) fclose(f);
+  text[n] = '\0';
+  return text;
+}
+
 static inline int remove_folder(void **state) {
   (void)state;
   char command[128];

@@ -1,11 +1,9 @@
-// Starting the real binary in the background, and comparing two world tables (src/cli/world_csv.h).
+// Waiting for what the real binary says in the background, and comparing two world tables (src/cli/world_csv.h).
 #ifndef VSSS_TESTS_CLI_FIELD_MATCH_H
 #define VSSS_TESTS_CLI_FIELD_MATCH_H
 
-#include <fcntl.h>
 #include <inttypes.h>
 #include <math.h>
-#include <signal.h>
 #include <time.h>
 
 #include "run_vsss.h"
@@ -15,35 +13,6 @@
 #else
 #define SANITIZED 0
 #endif
-
-// Both outputs go to the file log. Returns the process.
-static inline pid_t vsss_start(const char *log, const char *arguments) {
-  char binary[4096], command[8192];
-  vsss_binary(binary, sizeof binary);
-  snprintf(command, sizeof command, "exec '%s' %s", binary, arguments);
-  unlink(log); // nobody shall read what the one before said
-  fflush(NULL);
-  pid_t child = fork();
-  if (child) return child;
-  int out = open(log, O_CREAT | O_TRUNC | O_WRONLY, 0600);
-  dup2(out, STDOUT_FILENO);
-  dup2(out, STDERR_FILENO);
-  execl("/bin/sh", "sh", "-c", command, (char *)NULL);
-  _exit(127);
-}
-
-// Exit status, 128 + signal, or -1 where it did not end in time (it is then killed).
-static inline int vsss_wait(pid_t child, int seconds) {
-  int status;
-  for (int i = 0; i < 100 * seconds; i++) {
-    if (waitpid(child, &status, WNOHANG) == child)
-      return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    nanosleep(&(struct timespec){0, 10000000}, NULL);
-  }
-  kill(child, SIGKILL);
-  waitpid(child, &status, 0);
-  return -1;
-}
 
 static inline int wait_for_text(const char *path, const char *text, int seconds) {
   static char content[65536];

@@ -1,25 +1,10 @@
 // Tests src/cli/field_guest.c: our team plays in the league's server over the network, in both dialects.
-#include <signal.h>
-
 #include "assert_near.h"
 #include "run_vsss.h"
 #include "test_folder.h"
 #include "vsss/league_messages.h"
 
 static int offset;
-
-static pid_t start(const char *arguments) {
-  char binary[4096], command[8192];
-  vsss_binary(binary, sizeof binary);
-  snprintf(command, sizeof command, "exec '%s' %s >'%s/guest' 2>&1", binary, arguments, folder);
-  fflush(NULL);
-  pid_t child = fork();
-  if (child == 0) {
-    execl("/bin/sh", "sh", "-c", command, (char *)NULL);
-    _exit(127);
-  }
-  return child;
-}
 
 // The guest starts first and waits for the simulator; both teams of the match come over the network.
 static void our_team_plays_and_scores_as_a_guest(void **state) {
@@ -29,16 +14,16 @@ static void our_team_plays_and_scores_as_a_guest(void **state) {
     char text[512];
     snprintf(text, sizeof text, "field --camera %s:+%d --radio %s:+%d --team yellow --policy emc: --record '%s/csv'",
              dialect[d], offset + 10 * d, dialect[d], offset + 10 * d, folder);
-    pid_t guest = start(text);
+    char output[128];
+    snprintf(output, sizeof output, "%s/guest", folder);
+    pid_t guest = vsss_start(output, text);
     vsss_run run;
     snprintf(text, sizeof text,
              "serve --dialect %s --ports +%d --blue zero: --sync --answer 30 --drive planar --pause 0.5 --seconds 240 "
              "--json",
              dialect[d], offset + 10 * d);
     vsss(&run, text);
-    int status = 0;
-    kill(guest, SIGINT);
-    waitpid(guest, &status, 0);
+    int status = vsss_finish(guest, SIGINT);
     if (run.status != 0 || !strstr(run.out, "\"complete\": true") || !strstr(run.out, "\"illegal_placements\": 0"))
       fail_msg("%d: %s%s", run.status, run.out, run.err);
     int blue = -1, yellow = -1;
@@ -46,7 +31,7 @@ static void our_team_plays_and_scores_as_a_guest(void **state) {
     assert_non_null(score);
     assert_int_equal(sscanf(score, "\"score\": [%d, %d]", &blue, &yellow), 2);
     if (yellow < 1 || blue > yellow) fail_msg("%s", run.out);
-    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    assert_int_equal(status, 0);
     char path[128];
     snprintf(path, sizeof path, "%s/csv", folder);
     FILE *f = fopen(path, "r");

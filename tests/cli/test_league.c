@@ -16,17 +16,6 @@ static void write_file(const char *name, const char *text) {
   fclose(f);
 }
 
-static const char *read_file(const char *name) {
-  static char text[32768];
-  char path[256];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  FILE *f = fopen(path, "r");
-  size_t n = f ? fread(text, 1, sizeof text - 1, f) : 0;
-  if (f) fclose(f);
-  text[n] = '\0';
-  return text;
-}
-
 static void must_say(const char *text, const char *expected) {
   if (!strstr(text, expected)) fail_msg("'%s' is missing in: %s", expected, text);
 }
@@ -41,10 +30,7 @@ static void league(const char *name) {
 static void clubs_meet_from_both_sides_and_who_fails_is_named(void **state) {
   (void)state;
   char self[4096], ini[8192];
-  vsss_binary(self, sizeof self);
-  char *cut = strstr(self, "/build/");
-  if (!cut) cut = strrchr(self, '/');
-  *cut = '\0';
+  vsss_sources(self, sizeof self);
   snprintf(ini, sizeof ini,
            "[league]\nseconds = 15\npause = 0\nwait = 4\ndrive = planar\nfolder = %s/out\nports = +%d\n"
            "[club1]\nname = Zero\nplayer = zero:\n"
@@ -59,10 +45,10 @@ static void clubs_meet_from_both_sides_and_who_fails_is_named(void **state) {
   must_say(run.out, "Zero 10 : 0 Crash  Crash ended by itself (status 3)");
   must_say(run.out, "Silent 0 : 10 Zero  Silent was never heard");
   must_say(run.out, "out/index.html");
-  const char *json = read_file("out/results.json");
+  const char *json = folder_file("out/results.json");
   must_say(json, "\"matches\": 12, \"of\": 12");
   must_say(json, "\"why\": \"Crash ended by itself (status 3)\"");
-  const char *page = read_file("out/index.html");
+  const char *page = folder_file("out/index.html");
   must_say(page, "<a href=\"1-Zero-Program.log\">");
   must_say(page, "Crash ended by itself");
   assert_null(strstr(page, "<script"));
@@ -88,7 +74,7 @@ static void a_league_goes_on_where_it_was_stopped(void **state) {
   league("again.ini");
   assert_int_equal(run.status, 0);
   static char whole[32768];
-  snprintf(whole, sizeof whole, "%s", read_file("again/results.csv"));
+  snprintf(whole, sizeof whole, "%s", folder_file("again/results.csv"));
   // Keep the first match only: the second is played anew, to the same result.
   char part[32768];
   snprintf(part, sizeof part, "%s", whole);
@@ -99,7 +85,7 @@ static void a_league_goes_on_where_it_was_stopped(void **state) {
   league("again.ini");
   must_say(run.out, "1 of 2 matches are in");
   must_say(run.out, "2 of 2  B");
-  assert_string_equal(read_file("again/results.csv"), whole);
+  assert_string_equal(folder_file("again/results.csv"), whole);
   // Another league's results are not taken for ours.
   write_file("again/results.csv", "round,blue,yellow\n1,A,Nobody,1,0,0,\"\"\n");
   league("again.ini");

@@ -1,6 +1,4 @@
 // Tests src/cli/cmd_serve.c as a user, and src/serve/serve.c as a team's program sees it (tests/serve/conformance.py).
-#include <signal.h>
-
 #include "assert_near.h"
 #include "run_vsss.h"
 #include "test_folder.h"
@@ -9,41 +7,17 @@
 
 static int offset; // of this process's ports
 
-// Starts the server in the background; its standard output goes to folder/NAME.
+// Starts the server; what it says goes to folder/NAME.
 static pid_t serve(const char *name, const char *flags) {
-  char binary[4096], command[8192];
-  vsss_binary(binary, sizeof binary);
-  snprintf(command, sizeof command, "exec '%s' serve %s >'%s/%s' 2>&1", binary, flags, folder, name);
-  fflush(NULL);
-  pid_t child = fork();
-  if (child == 0) {
-    execl("/bin/sh", "sh", "-c", command, (char *)NULL);
-    _exit(127);
-  }
-  return child;
-}
-
-static int finish(pid_t child, int signal_number) {
-  int status = 0;
-  if (signal_number) kill(child, signal_number);
-  waitpid(child, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
-static const char *read_file(const char *name) {
-  static char text[16384];
-  char path[256];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  FILE *f = fopen(path, "r");
-  size_t n = f ? fread(text, 1, sizeof text - 1, f) : 0;
-  if (f) fclose(f);
-  text[n] = '\0';
-  return text;
+  char arguments[1024], output[128];
+  snprintf(arguments, sizeof arguments, "serve %s", flags);
+  snprintf(output, sizeof output, "%s/%s", folder, name);
+  return vsss_start(output, arguments);
 }
 
 static void wait_for(const char *name, const char *text) {
-  for (int k = 0; k < 600 && !strstr(read_file(name), text); k++) usleep(50000);
-  if (!strstr(read_file(name), text)) fail_msg("the server never said '%s': %s", text, read_file(name));
+  for (int k = 0; k < 600 && !strstr(folder_file(name), text); k++) usleep(50000);
+  if (!strstr(folder_file(name), text)) fail_msg("the server never said '%s': %s", text, folder_file(name));
 }
 
 // The client finds nothing to complain about. It may start first: it waits for the server.
@@ -53,23 +27,20 @@ static void conforms(const char *which, int shift, const char *flags) {
   snprintf(name, sizeof name, "%s.json", which);
   pid_t server = serve(name, text);
   char self[4096], command[8192];
-  vsss_binary(self, sizeof self); // build/<flavour>/vsss, or vsss beside the sources
-  char *cut = strstr(self, "/build/");
-  if (!cut) cut = strrchr(self, '/');
-  *cut = '\0';
+  vsss_sources(self, sizeof self);
   snprintf(command, sizeof command, "python3 '%s/tests/serve/conformance.py' %s %d 2>&1", self, which, shift);
   FILE *client = popen(command, "r");
   char said[2048];
   said[fread(said, 1, sizeof said - 1, client)] = '\0';
   int result = pclose(client);
-  int status = finish(server, SIGINT);
-  if (result != 0 || status != 0) fail_msg("%s, server %d: %s", said, status, read_file(name));
+  int status = vsss_finish(server, SIGINT);
+  if (result != 0 || status != 0) fail_msg("%s, server %d: %s", said, status, folder_file(name));
 }
 
 static void a_full_match_conforms(void **state) {
   (void)state;
   conforms("match", offset, "--sync --seconds 60 --pause 1 --drive planar --answer 30");
-  const char *json = read_file("match.json");
+  const char *json = folder_file("match.json");
   if (!strstr(json, "\"complete\": true") || !strstr(json, "\"garbage\": 0") || !strstr(json, "\"silences\": 0"))
     fail_msg("%s", json);
 }
@@ -92,7 +63,7 @@ static void a_second_server_is_refused_with_the_first_one_named(void **state) {
   // Other command ports, the same vision: two worlds on one group would mix.
   snprintf(flags, sizeof flags, "serve --ports vision=%d,command=%d", 10002 + offset + 30, 20011 + offset + 40);
   assert_refused(flags, 1, holder);
-  assert_int_equal(finish(first, SIGINT), 0);
+  assert_int_equal(vsss_finish(first, SIGINT), 0);
 }
 
 static void two_servers_run_side_by_side(void **state) {
@@ -107,8 +78,8 @@ static void two_servers_run_side_by_side(void **state) {
   vsss(&run, flags);
   assert_int_equal(run.status, 0);
   assert_non_null(strstr(run.out, "\"complete\": true"));
-  assert_int_equal(finish(other, SIGINT), 0);
-  if (!strstr(read_file("other"), "\"unsent\": 0")) fail_msg("%s", read_file("other"));
+  assert_int_equal(vsss_finish(other, SIGINT), 0);
+  if (!strstr(folder_file("other"), "\"unsent\": 0")) fail_msg("%s", folder_file("other"));
 }
 
 // A local match over the server twice, once under fire: garbage, oversized and truncated datagrams change nothing.
@@ -137,14 +108,14 @@ static void garbage_changes_nothing(void **state) {
     }
     vs_udp_close(&to);
     assert_int_equal(status, 0);
-    const char *at = strstr(read_file("fire"), "\"hash\"");
+    const char *at = strstr(folder_file("fire"), "\"hash\"");
     assert_non_null(at);
     snprintf(hash[fire], sizeof hash[fire], "%.28s", at);
   }
   assert_string_equal(hash[0], hash[1]);
-  const char *garbage = strstr(read_file("fire"), "\"garbage\": ");
+  const char *garbage = strstr(folder_file("fire"), "\"garbage\": ");
   assert_non_null(garbage);
-  if (atol(garbage + 11) < 1000) fail_msg("%s", read_file("fire"));
+  if (atol(garbage + 11) < 1000) fail_msg("%s", folder_file("fire"));
 }
 
 static void a_record_is_replayed(void **state) {

@@ -1,6 +1,5 @@
 // Tests src/cli/cmd_view.c, src/view/web.c and deploy/view/index.html: the page by plain HTTP and in a headless browser.
 #include <arpa/inet.h>
-#include <signal.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 
@@ -12,23 +11,15 @@
 static int port;
 
 static pid_t start(const char *flags) {
-  char binary[4096], command[8192];
-  vsss_binary(binary, sizeof binary);
-  snprintf(command, sizeof command, "exec '%s' view %s --port %d >'%s/view' 2>&1", binary, flags, port, folder);
-  fflush(NULL);
-  pid_t child = fork();
-  if (child == 0) {
-    execl("/bin/sh", "sh", "-c", command, (char *)NULL);
-    _exit(127);
-  }
-  return child;
+  char arguments[1024], output[128];
+  snprintf(arguments, sizeof arguments, "view %s --port %d", flags, port);
+  snprintf(output, sizeof output, "%s/view", folder);
+  return vsss_start(output, arguments);
 }
 
 static void stop(pid_t child) {
-  int status = 0;
-  kill(child, SIGINT);
-  waitpid(child, &status, 0);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail_msg("view ended with %d", status);
+  int status = vsss_finish(child, SIGINT);
+  if (status != 0) fail_msg("view ended with %d: %s", status, folder_file("view"));
 }
 
 // The answer to a request, headers and all; waits for the server.
