@@ -116,18 +116,6 @@ vs_status vs_capi_all_bound(const capi_array *arrays, int n, vs_error *err) {
   return VS_OK;
 }
 
-vs_status vs_capi_snapshot_check(const void *state, size_t size, size_t expected, uint64_t settings, vs_error *err) {
-  capi_snapshot head = {0};
-  if (size >= sizeof head) memcpy(&head, state, sizeof head);
-  if (head.magic != CAPI_SNAPSHOT_MAGIC) return vs_fail(err, VS_USAGE, "this is not a snapshot");
-  if (head.settings != settings)
-    return vs_fail(err, VS_USAGE, "the snapshot is of an environment with other settings or another release");
-  if (size != expected || head.size != expected)
-    return vs_fail(err, VS_USAGE, "the snapshot has %zu bytes, %zu are expected: other players, or it was cut short",
-                   size, expected);
-  return VS_OK;
-}
-
 void vs_capi_write_world(const vs_world *world, const vs_game *game, double *out) {
   const vs_ball *ball = &world->ball;
   const double head[8] = {game->time_s, game->duration_s, game->score[0], game->score[1],

@@ -54,12 +54,22 @@ vs_status vs_capi_realism(const char *value, char *kept, size_t size, vs_realism
 // Sets one key of a schema; the error names the setting alone.
 vs_status vs_capi_set(const char *text, const void *schema, vs_error *err);
 
-// A block of the caller around one of ours, which wants to be aligned.
-#define CAPI_SNAPSHOT_MAGIC UINT64_C(0x70616e7373737376) // "vsssnap" and a p
-typedef struct capi_snapshot {
-  uint64_t magic, settings, size; // size: of all
-} capi_snapshot;
-vs_status vs_capi_snapshot_check(const void *state, size_t size, size_t expected, uint64_t settings, vs_error *err);
+// What can be snapshotted, as a table. States are aligned to 64 bytes.
+typedef struct capi_snapshot_kind {
+  uint64_t (*settings)(const void *self); // hash of all that a snapshot depends on
+  size_t (*state_size)(const void *self); // 0: some player cannot be copied
+  void (*save)(const void *self, void *state);
+  vs_status (*restore)(void *self, const void *state, vs_error *err);
+} capi_snapshot_kind;
+typedef struct capi_subject {
+  const capi_snapshot_kind *kind;
+  void *self;
+  capi_guard *guard;
+} capi_subject;
+// The exported functions of each kind: a snapshot's size; one out of `from` or into `to`, the other NULL.
+int vs_capi_snapshot_size(capi_subject subject, size_t *size, char *error, size_t error_size);
+int vs_capi_snapshot_copy(capi_subject subject, const void *from, void *to, size_t size, char *error,
+                          size_t error_size);
 
 // The numbers of vs_capi_vec_world (VS_CAPI_WORLD doubles).
 void vs_capi_write_world(const vs_world *world, const vs_game *game, double *out);

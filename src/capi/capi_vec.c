@@ -208,62 +208,27 @@ int vs_capi_vec_hash(vs_capi_vec *v, uint64_t *hash, char *error, size_t error_s
   return vs_capi_told(s, &err, error, error_size);
 }
 
-static vs_status state_size(const vs_capi_vec *v, size_t *size, vs_error *err) {
-  size_t inner = vs_vecenv_state_size(v->vec);
-  if (inner == 0)
-    return vs_fail(err, VS_USAGE, "a player here cannot be copied (a plugin, a function): no snapshot of its matches");
-  *size = sizeof(capi_snapshot) + inner;
-  return VS_OK;
+static uint64_t settings_hash(const void *v) { return vs_capi_settings_hash(&((const vs_capi_vec *)v)->settings); }
+static size_t state_size(const void *v) { return vs_vecenv_state_size(((const vs_capi_vec *)v)->vec); }
+static void save(const void *v, void *state) { vs_vecenv_save(((const vs_capi_vec *)v)->vec, state); }
+static vs_status restore(void *v, const void *state, vs_error *err) {
+  return vs_vecenv_restore(((vs_capi_vec *)v)->vec, state, err);
+}
+static capi_subject subject(vs_capi_vec *v) {
+  static const capi_snapshot_kind kind = {settings_hash, state_size, save, restore};
+  return (capi_subject){&kind, v, &v->guard};
 }
 
 int vs_capi_vec_state_size(vs_capi_vec *v, size_t *size, char *error, size_t error_size) {
-  vs_error err = {0};
-  vs_status s = vs_capi_enter(&v->guard, &err);
-  if (s != VS_OK) return vs_capi_told(s, &err, error, error_size);
-  s = state_size(v, size, &err);
-  vs_capi_leave(&v->guard);
-  return vs_capi_told(s, &err, error, error_size);
-}
-
-// The matches' states want to be aligned; the caller's block need not be.
-static vs_status copy_state(vs_capi_vec *v, const void *from, void *to, size_t size, vs_error *err) {
-  size_t expected = 0;
-  uint64_t settings = vs_capi_settings_hash(&v->settings);
-  vs_status s = state_size(v, &expected, err);
-  if (s == VS_OK && from) s = vs_capi_snapshot_check(from, size, expected, settings, err);
-  if (s == VS_OK && size != expected) s = vs_fail(err, VS_USAGE, "%zu bytes for a snapshot of %zu", size, expected);
-  if (s != VS_OK) return s;
-  size_t inner = expected - sizeof(capi_snapshot);
-  void *block = aligned_alloc(64, (inner + 63) / 64 * 64);
-  if (!block) return vs_fail(err, VS_FAIL, "out of memory for a snapshot");
-  if (from) {
-    memcpy(block, (const char *)from + sizeof(capi_snapshot), inner);
-    s = vs_vecenv_restore(v->vec, block, err);
-  } else {
-    vs_vecenv_save(v->vec, block);
-    memcpy(to, &(capi_snapshot){CAPI_SNAPSHOT_MAGIC, settings, expected}, sizeof(capi_snapshot));
-    memcpy((char *)to + sizeof(capi_snapshot), block, inner);
-  }
-  free(block);
-  return s;
+  return vs_capi_snapshot_size(subject(v), size, error, error_size);
 }
 
 int vs_capi_vec_save(vs_capi_vec *v, void *state, size_t size, char *error, size_t error_size) {
-  vs_error err = {0};
-  vs_status s = vs_capi_enter(&v->guard, &err);
-  if (s != VS_OK) return vs_capi_told(s, &err, error, error_size);
-  s = copy_state(v, NULL, state, size, &err);
-  vs_capi_leave(&v->guard);
-  return vs_capi_told(s, &err, error, error_size);
+  return vs_capi_snapshot_copy(subject(v), NULL, state, size, error, error_size);
 }
 
 int vs_capi_vec_restore(vs_capi_vec *v, const void *state, size_t size, char *error, size_t error_size) {
-  vs_error err = {0};
-  vs_status s = vs_capi_enter(&v->guard, &err);
-  if (s != VS_OK) return vs_capi_told(s, &err, error, error_size);
-  s = copy_state(v, state, NULL, size, &err);
-  vs_capi_leave(&v->guard);
-  return vs_capi_told(s, &err, error, error_size);
+  return vs_capi_snapshot_copy(subject(v), state, NULL, size, error, error_size);
 }
 
 int vs_capi_vec_world(vs_capi_vec *v, int env, int team, int measured, double *out, char *error, size_t error_size) {

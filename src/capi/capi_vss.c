@@ -263,70 +263,62 @@ int vs_capi_vss_step(vs_capi_vss *v, int set, char *error, size_t error_size) {
   return vs_capi_told(s, &err, error, error_size);
 }
 
-static uint64_t settings_hash(const vs_capi_vss *v) {
-  const vss_settings *s = &v->settings;
+static uint64_t settings_hash(const void *self) {
+  const vss_settings *s = &((const vs_capi_vss *)self)->settings;
   uint64_t hash = vs_hash_bytes(VS_HASH_START, s->drive, strlen(s->drive));
   hash = vs_hash_bytes(hash, s->realism, strlen(s->realism));
   hash = vs_hash_bytes(hash, &s->envs, sizeof s->envs);
   hash = vs_hash_bytes(hash, &s->max_steps, sizeof s->max_steps);
-  return vs_hash_bytes(hash, "vss-v0 1", 8);
+  return vs_hash_bytes(hash, "vss-v0 2", 8);
 }
 
-static size_t snapshot_size(const vs_capi_vss *v) {
-  return sizeof(capi_snapshot) + (size_t)v->settings.envs * (sizeof(vss_v0) + vs_sim_state_size(v->sim[0]));
+// A state: of each environment its own struct, then its simulator, each from an aligned place on.
+static size_t aligned(size_t size) { return (size + 63) / 64 * 64; }
+
+static size_t size_of_one(const vs_capi_vss *v) {
+  return aligned(sizeof(vss_v0)) + aligned(vs_sim_state_size(v->sim[0]));
 }
 
-int vs_capi_vss_state_size(vs_capi_vss *v, size_t *size, char *error, size_t error_size) {
-  vs_error err = {0};
-  vs_status s = vs_capi_enter(&v->guard, &err);
-  if (s != VS_OK) return vs_capi_told(s, &err, error, error_size);
-  *size = snapshot_size(v);
-  vs_capi_leave(&v->guard);
-  return vs_capi_told(s, &err, error, error_size);
+static size_t state_size(const void *self) {
+  const vs_capi_vss *v = self;
+  return (size_t)v->settings.envs * size_of_one(v);
 }
 
-static vs_status copy_state(vs_capi_vss *v, const char *from, char *to, size_t size, vs_error *err) {
-  size_t expected = snapshot_size(v), of_sim = vs_sim_state_size(v->sim[0]);
-  vs_status s = VS_OK;
-  if (from) s = vs_capi_snapshot_check(from, size, expected, settings_hash(v), err);
-  if (to && size != expected) s = vs_fail(err, VS_USAGE, "%zu bytes for a snapshot of %zu", size, expected);
-  if (s != VS_OK) return s;
-  void *block = aligned_alloc(64, (of_sim + 63) / 64 * 64);
-  if (!block) return vs_fail(err, VS_FAIL, "out of memory for a snapshot");
-  if (to) memcpy(to, &(capi_snapshot){CAPI_SNAPSHOT_MAGIC, settings_hash(v), expected}, sizeof(capi_snapshot));
-  size_t at = sizeof(capi_snapshot);
-  for (int i = 0; i < v->settings.envs && s == VS_OK; i++) {
-    if (from) {
-      memcpy(&v->env[i], from + at, sizeof(vss_v0));
-      memcpy(block, from + at + sizeof(vss_v0), of_sim);
-      s = vs_sim_restore(v->sim[i], block, err);
-    } else {
-      vs_sim_save(v->sim[i], block);
-      memcpy(to + at, &v->env[i], sizeof(vss_v0));
-      memcpy(to + at + sizeof(vss_v0), block, of_sim);
-    }
-    at += sizeof(vss_v0) + of_sim;
+static void save(const void *self, void *state) {
+  const vs_capi_vss *v = self;
+  char *at = state;
+  for (int i = 0; i < v->settings.envs; i++, at += size_of_one(v)) {
+    memcpy(at, &v->env[i], sizeof(vss_v0));
+    vs_sim_save(v->sim[i], at + aligned(sizeof(vss_v0)));
   }
-  free(block);
+}
+
+static vs_status restore(void *self, const void *state, vs_error *err) {
+  vs_capi_vss *v = self;
+  const char *at = state;
+  vs_status s = VS_OK;
+  for (int i = 0; i < v->settings.envs && s == VS_OK; i++, at += size_of_one(v)) {
+    memcpy(&v->env[i], at, sizeof(vss_v0));
+    s = vs_sim_restore(v->sim[i], at + aligned(sizeof(vss_v0)), err);
+  }
   return s;
 }
 
+static capi_subject subject(vs_capi_vss *v) {
+  static const capi_snapshot_kind kind = {settings_hash, state_size, save, restore};
+  return (capi_subject){&kind, v, &v->guard};
+}
+
+int vs_capi_vss_state_size(vs_capi_vss *v, size_t *size, char *error, size_t error_size) {
+  return vs_capi_snapshot_size(subject(v), size, error, error_size);
+}
+
 int vs_capi_vss_save(vs_capi_vss *v, void *state, size_t size, char *error, size_t error_size) {
-  vs_error err = {0};
-  vs_status s = vs_capi_enter(&v->guard, &err);
-  if (s != VS_OK) return vs_capi_told(s, &err, error, error_size);
-  s = copy_state(v, NULL, state, size, &err);
-  vs_capi_leave(&v->guard);
-  return vs_capi_told(s, &err, error, error_size);
+  return vs_capi_snapshot_copy(subject(v), NULL, state, size, error, error_size);
 }
 
 int vs_capi_vss_restore(vs_capi_vss *v, const void *state, size_t size, char *error, size_t error_size) {
-  vs_error err = {0};
-  vs_status s = vs_capi_enter(&v->guard, &err);
-  if (s != VS_OK) return vs_capi_told(s, &err, error, error_size);
-  s = copy_state(v, state, NULL, size, &err);
-  vs_capi_leave(&v->guard);
-  return vs_capi_told(s, &err, error, error_size);
+  return vs_capi_snapshot_copy(subject(v), state, NULL, size, error, error_size);
 }
 
 vs_status vs_capi_vss_picture(vs_capi_vss *v, int env, vs_world *world, vs_game *game, vs_error *err) {

@@ -5,24 +5,17 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/config_rows.h"
 #include "capi_internal.h"
 #include "learn/reward_mix.h"
 #include "vsss/config.h"
 #include "vsss/paths.h"
 
-static void schema_of(capi_settings *s, vs_config_key keys[CAPI_SETTINGS_MAX]) {
-#define TEXT(field, help)                                                                                              \
-  { #field, VS_CONFIG_TEXT, s->field, sizeof s->field, 0, 0, help }
-#define WHOLE(field, min, max, help)                                                                                   \
-  { #field, VS_CONFIG_INT, &s->field, 0, min, max, help }
-#define REAL(field, min, max, help)                                                                                    \
-  { #field, VS_CONFIG_REAL, &s->field, 0, min, max, help }
-#define SWITCH(field, help)                                                                                            \
-  { #field, VS_CONFIG_BOOL, &s->field, 0, 0, 0, help }
+static void schema_of(capi_settings *d, vs_config_key keys[CAPI_SETTINGS_MAX]) {
   const vs_config_key rows[] = {
       WHOLE(envs, 1, 4096, "matches side by side"),
       WHOLE(threads, 1, 256, "threads; results do not depend on them"),
-      {"seed", VS_CONFIG_SEED, &s->seed, 0, 0, 0, "everything random follows from it"},
+      SEED(seed, "everything random follows from it"),
       TEXT(drive, "planar (fast) or contact (the reference)"),
       TEXT(rules, "paper or league"),
       TEXT(placement, "restarts: random (legal poses) or paper"),
@@ -45,10 +38,6 @@ static void schema_of(capi_settings *s, vs_config_key keys[CAPI_SETTINGS_MAX]) {
       SWITCH(stay_over, "an ended match waits to be started"),
       {.name = NULL},
   };
-#undef TEXT
-#undef WHOLE
-#undef REAL
-#undef SWITCH
   _Static_assert(sizeof rows / sizeof *rows <= CAPI_SETTINGS_MAX, "raise CAPI_SETTINGS_MAX");
   memcpy(keys, rows, sizeof rows);
 }

@@ -8,7 +8,7 @@
 #define VS_ARCHIVE_NAME 12 // bytes of a section's name, its end included
 
 // A kind of section. Whoever changes what its bytes mean raises `version`, which is what is written; `oldest` is the one of
-// before that can still be read. Files from before 0.2 say no version: theirs is 1.
+// before that can still be read. Files from before 0.1.0 say no version: theirs is 1.
 typedef struct vs_section {
   const char *name;
   uint32_t oldest, version;

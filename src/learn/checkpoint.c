@@ -13,7 +13,7 @@
 #include "vsss/contract.h"
 
 // What a checkpoint holds, and the versions of it (archive.h). The league's are in league_file.c. Adam's m and v are
-// called mean and square in the file, as they were in the first release.
+// called mean and square in the file, as they always were.
 static const vs_section contract_section = {"contract", 1, 1};
 static const vs_section settings_section = {"settings", 1, 2}; // 2: names of before are read, not written
 static const vs_section counters_section = {"counters", 1, 1};

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/config_rows.h"
 #include "league.h"
 #include "net.h"
 #include "reward_mix.h"
@@ -115,16 +116,6 @@ vs_status vs_train_def_preset(const char *name, vs_train_def *out, vs_error *err
 }
 
 void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
-#define TEXT(field, help)                                                                                              \
-  { #field, VS_CONFIG_TEXT, d->field, sizeof d->field, 0, 0, help }
-#define WHOLE(field, min, max, help)                                                                                   \
-  { #field, VS_CONFIG_INT, &d->field, 0, min, max, help }
-#define REAL(field, min, max, help)                                                                                    \
-  { #field, VS_CONFIG_REAL, &d->field, 0, min, max, help }
-#define SWITCH(field, help)                                                                                            \
-  { #field, VS_CONFIG_BOOL, &d->field, 0, 0, 0, help }
-#define ALIAS(old, now)                                                                                                \
-  { #old, VS_CONFIG_ALIAS, NULL, 0, 0, 0, #now }
   const vs_config_key rows[] = {
       TEXT(drive, "planar (fast) or contact (the reference)"),
       TEXT(realism, "INI file of sensors and dynamics, drawn anew each episode"),
@@ -139,7 +130,7 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       WHOLE(envs, 1, 4096, "matches side by side"),
       WHOLE(steps, 1, 4096, "decisions of each match per update"),
       WHOLE(threads, 1, 256, "threads"),
-      {"seed", VS_CONFIG_SEED, &d->seed, 0, 0, 0, "everything random follows from it"},
+      SEED(seed, "everything random follows from it"),
       TEXT(opponent, "mix of self, frozen, pool and players, such as self=0.6,pool=0.4"),
       REAL(replace_score, -10, 10, "frozen: mean goal difference at which it is replaced"),
       SWITCH(score_window_zero_filled, "frozen: the paper's window of 100 results, zeros at first and never cleared"),
@@ -172,17 +163,12 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       TEXT(learner, "own (kernels over BLAS) or torch"),
       TEXT(precision, "own learner's backward pass: fp32, bf16, or auto: the faster one here, tried at the start"),
       REAL(transitions_m, 0, 1e9, "millions of transitions to stop at; 0: until stopped"),
-      // Names of 0.1.0, in its checkpoints and in scripts.
+      // Names of before 0.1.0, in checkpoints and in scripts.
       ALIAS(pieces, microbatches),
       ALIAS(first_shape, initial_concentration),
       ALIAS(window_of_zeros, score_window_zero_filled),
       {.name = NULL},
   };
-#undef TEXT
-#undef WHOLE
-#undef REAL
-#undef SWITCH
-#undef ALIAS
   _Static_assert(sizeof rows / sizeof *rows <= VS_TRAIN_KEYS_MAX, "raise VS_TRAIN_KEYS_MAX");
   memcpy(keys, rows, sizeof rows);
 }

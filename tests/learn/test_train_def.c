@@ -51,7 +51,7 @@ static void settings_read_back_as_they_were_written(void **state) {
   assert_true(read.value_scale);
 }
 
-static void names_of_the_first_release_are_still_read(void **state) {
+static void names_of_before_are_still_read(void **state) {
   (void)state;
   vs_train_def def;
   vs_config_key keys[VS_TRAIN_KEYS_MAX];
@@ -112,12 +112,9 @@ static void the_schedule_is_linear_between_its_ends(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_paper_preset_is_table_2),
-      cmocka_unit_test(settings_read_back_as_they_were_written),
-      cmocka_unit_test(names_of_the_first_release_are_still_read),
-      cmocka_unit_test(every_preset_passes_its_own_check),
-      cmocka_unit_test(a_reward_is_a_preset_and_changes),
-      cmocka_unit_test(the_schedule_is_linear_between_its_ends),
+      cmocka_unit_test(the_paper_preset_is_table_2),      cmocka_unit_test(settings_read_back_as_they_were_written),
+      cmocka_unit_test(names_of_before_are_still_read),   cmocka_unit_test(every_preset_passes_its_own_check),
+      cmocka_unit_test(a_reward_is_a_preset_and_changes), cmocka_unit_test(the_schedule_is_linear_between_its_ends),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
