@@ -32,6 +32,7 @@ typedef struct vs_rig_def {
   double camera_height_m;
   bool white_walls; // as LARC 2026 has them
   vs_rig_optics optics;
+  int delay_frames;         // pictures by which the own robots act late, as slow electronics would: 0 to 10
   vs_mark own, their;       // what the teams wear: VS_MARK_APRIL, VS_MARK_PATCH
   int tag_id[VS_TEAM_SIZE]; // AprilTags of the own team; ArUco marks are the league's
   uint8_t radio_id[VS_TEAM_SIZE];
@@ -65,6 +66,7 @@ typedef struct vs_rig_stats {
   int64_t touches;  // times an own robot came to touch the ball
   int64_t commands; // radio frames that the own robots took, all three together
   int64_t driven;   // frames in which an own robot's wheels were commanded to turn
+  double act_s;     // from a new command's bytes to the motors, in the mean; 0: there was none
   vs_frame_server_stats camera;
 } vs_rig_stats;
 vs_rig_stats vs_rig_get_stats(vs_rig *rig);

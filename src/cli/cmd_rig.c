@@ -14,7 +14,7 @@ typedef struct options {
   bool white_walls;
   double seconds;
   uint64_t seed;
-  int matches, width, height, rt;
+  int matches, width, height, rt, delay;
   bool no_lcm, help;
 } options;
 
@@ -53,6 +53,8 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
       {"noise", VS_FLAG_REAL, &o->optics.noise, "GREYS", "of the camera: its deviation in grey levels", 0, 40},
       {"uneven-light", VS_FLAG_REAL, &o->optics.uneven, "SHARE", "of the light that the darkest corner lacks", 0, 0.95},
       {"blur", VS_FLAG_REAL, &o->optics.blur_px, "PX", "deviation of the lens's blur", 0, 3},
+      {"robot-delay", VS_FLAG_INT, &o->delay, "FRAMES", "by which the own robots act late, as slow electronics do", 0,
+       10},
       {"dir", VS_FLAG_TEXT, &o->folder, "DIR", "where camera, radio and calib.ini are put", 0, 0},
       {"config", VS_FLAG_TEXT, &o->config, "FILE", "a field.ini: its [radio] tells the robots' numbers and key", 0, 0},
       {"truth", VS_FLAG_TEXT, &o->truth, "FILE", "write the true world of every picture as CSV", 0, 0},
@@ -79,6 +81,7 @@ static vs_status fill(const options *o, const char *folder, vs_rig_def *def, vs_
   def->seed = o->seed;
   def->white_walls = o->white_walls;
   def->optics = o->optics;
+  def->delay_frames = o->delay;
   def->width_px = o->width;
   def->height_px = o->height;
   def->folder = folder;
@@ -159,6 +162,7 @@ static void print_summary(vs_rig *rig) {
   printf("blue %d:%d yellow after %.1f s\n", game->score[VS_BLUE], game->score[VS_YELLOW], game->time_s);
   printf("ball touched %lld times, driven in %lld of %lld frames, %lld radio frames taken\n", (long long)s.touches,
          (long long)s.driven, (long long)s.frames, (long long)s.commands);
+  if (s.act_s > 0) printf("a command acted %.1f ms after its bytes came, in the mean\n", 1e3 * s.act_s);
   printf("pictures: %lld sent, %lld replaced by newer ones, %lld not drawn because the machine was late\n",
          (long long)s.camera.sent, (long long)s.camera.dropped, (long long)s.late);
 }

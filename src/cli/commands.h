@@ -12,6 +12,8 @@ int cmd_eval(int argc, char **argv);
 int cmd_plot(int argc, char **argv);
 
 int cmd_bridge(int argc, char **argv);
+int cmd_identify(int argc, char **argv);
+int cmd_latency(int argc, char **argv);
 int cmd_replay(int argc, char **argv);
 int cmd_league(int argc, char **argv);
 int cmd_view(int argc, char **argv);

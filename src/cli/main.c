@@ -24,6 +24,8 @@ static const command commands[] = {
     {"league", cmd_league, "clubs play each other: players and teams' own programs; table, page, logs"},
     {"train", cmd_train, "learn by self-play; writes a policy as ONNX"},
     {"bridge", cmd_bridge, "carry wheel commands from LCM to the radio, and telemetry back"},
+    {"latency", cmd_latency, "from a log of the field: camera to radio, and command to motion"},
+    {"identify", cmd_identify, "from a log of the field: delay, time constants and gains of each robot"},
     {"plot", cmd_plot, "figures of a training run"},
     {"view", cmd_view, "a match in the browser, from a log or live"},
     {"replay", cmd_replay, "show a log of lcm-logger as text or video, or send it again"},

@@ -3,6 +3,7 @@
 #define VSSS_CLI_REPLAY_H
 
 #include "cli.h"
+#include "field_config.h"
 #include "vsss/bus.h"
 #include "vsss/bus_log.h"
 
@@ -34,6 +35,9 @@ typedef struct replay_def {
 vs_status replay_scan(vs_bus_log *log, const replay_def *def, replay_summary *out, vs_error *err);
 void replay_print_summary(const char *path, const replay_summary *s, bool json);
 bool replay_wants(const vs_flag_list *wanted, const char *channel);
+
+// What the run of such a record was started with.
+vs_status replay_setup(vs_bus_log *log, const char *path, vs_field_config *config, vs_error *err);
 
 // Computes a record of `vsss field --record` again and compares every turn. VS_FAIL: the first difference, or no such record.
 vs_status replay_check(vs_bus_log *log, const char *path, vs_error *err);

@@ -84,9 +84,7 @@ static vs_status same_file(const char *uri, const char *recorded, vs_error *err)
                  *now ? "has changed" : "is not here", recorded);
 }
 
-static vs_status apply(check *c, vs_error *err) {
-  const setup *s = &c->setup;
-  vs_field_def *d = &c->config.def;
+static vs_status apply(const setup *s, vs_field_def *d, vs_error *err) {
   vs_status status = vs_cli_team("setup.team =", s->team, &d->team, err);
   vs_mark own, their;
   if (status == VS_OK) status = vs_mark_parse("setup.own_tags =", s->own_tags, false, &own, err);
@@ -102,10 +100,7 @@ static vs_status apply(check *c, vs_error *err) {
   d->referee_goes = s->referee_goes;
   d->seed = s->seed;
   d->lcm = false;
-  c->start = (vs_field_rerun){s->width_px, s->height_px, (int64_t)s->start_us};
-  d->rerun = &c->start;
-  status = same_file(s->policy, s->policy_hash, err);
-  return status == VS_OK ? same_file(s->fallback, s->fallback_hash, err) : status;
+  return VS_OK;
 }
 
 static vs_status open_calib(check *c, const char *text, vs_error *err) {
@@ -118,18 +113,31 @@ static vs_status open_calib(check *c, const char *text, vs_error *err) {
   return VS_OK;
 }
 
-static vs_status start(check *c, vs_bus_log *log, const char *path, vs_error *err) {
+static vs_status load(vs_bus_log *log, const char *path, setup *out, vs_field_config *config, vs_error *err) {
   char *text = NULL;
-  c->calib_file = -1;
   vs_status s = find(log, path, VS_SETUP_CHANNEL, &text, err);
-  if (s == VS_OK) s = read_setup(path, text, &c->setup, err);
+  if (s == VS_OK) s = read_setup(path, text, out, err);
   free(text);
   text = NULL;
   if (s == VS_OK) s = find(log, path, VS_CONFIG_CHANNEL, &text, err);
-  if (s == VS_OK) s = vs_field_config_parse(path, text, &c->config, err);
+  if (s == VS_OK) s = vs_field_config_parse(path, text, config, err);
   free(text);
-  text = NULL;
-  if (s == VS_OK) s = apply(c, err);
+  return s == VS_OK ? apply(out, &config->def, err) : s;
+}
+
+vs_status replay_setup(vs_bus_log *log, const char *path, vs_field_config *config, vs_error *err) {
+  static setup s; // the definition's texts lie in it
+  return load(log, path, &s, config, err);
+}
+
+static vs_status start(check *c, vs_bus_log *log, const char *path, vs_error *err) {
+  char *text = NULL;
+  c->calib_file = -1;
+  vs_status s = load(log, path, &c->setup, &c->config, err);
+  if (s == VS_OK) s = same_file(c->setup.policy, c->setup.policy_hash, err);
+  if (s == VS_OK) s = same_file(c->setup.fallback, c->setup.fallback_hash, err);
+  c->start = (vs_field_rerun){c->setup.width_px, c->setup.height_px, (int64_t)c->setup.start_us};
+  c->config.def.rerun = &c->start;
   if (s == VS_OK && c->setup.calibrated) s = find(log, path, VS_CALIB_CHANNEL, &text, err);
   if (s == VS_OK && text) s = open_calib(c, text, err);
   free(text);

@@ -1,4 +1,4 @@
-// random: and zero:, the two players without a thought.
+// random:, zero: and shake:, the players without a thought.
 #include <string.h>
 
 #include "policy_internal.h"
@@ -47,4 +47,63 @@ const vsss_player_api vs_player_zero = {
     .state_size = 1,
     .init = zero_init,
     .step = zero_step,
+};
+
+// Each robot swings: forth and back, left and right, one wheel and the other, each movement and then its reverse, so that it
+// stays about where it is. Small enough for motors of any robot to follow without their limits (the simulator's leave their
+// linear range at 7.7 rad/s): what identify fits its model to.
+#define SHAKE_MIN_RADPS 3.0
+#define SHAKE_MAX_RADPS 7.0
+#define SHAKE_MIN_S     0.25
+#define SHAKE_MAX_S     0.7
+
+typedef struct shake_robot {
+  double left_s, length_s; // of this movement
+  vs_wheels wheels;
+  double reversed; // it is the way back: not 0
+} shake_robot;
+typedef struct shake_state {
+  vs_rng rng;
+  shake_robot robot[VS_TEAM_SIZE];
+} shake_state;
+
+static vs_status shake_init(void *state, uint64_t seed, const char *options, vs_error *err) {
+  *(shake_state *)state = (shake_state){.rng = vs_rng_make(seed, 0)};
+  return vs_player_options("shake:", options, no_options, err);
+}
+
+static void shake_next(shake_state *s, shake_robot *r) {
+  static const vs_wheels way[] = {{1, 1}, {1, -1}, {1, 0}, {0, 1}};
+  if (r->reversed == 0.0 && r->length_s > 0) {
+    r->wheels = (vs_wheels){-r->wheels.left_radps, -r->wheels.right_radps};
+    r->reversed = 1;
+  } else {
+    const vs_wheels *w = &way[vs_rng_below(&s->rng, 4)];
+    double speed = vs_rng_range(&s->rng, SHAKE_MIN_RADPS, SHAKE_MAX_RADPS);
+    if (vs_rng_below(&s->rng, 2)) speed = -speed;
+    r->wheels = (vs_wheels){speed * w->left_radps, speed * w->right_radps};
+    r->length_s = vs_rng_range(&s->rng, SHAKE_MIN_S, SHAKE_MAX_S);
+    r->reversed = 0;
+  }
+  r->left_s = r->length_s;
+}
+
+static void shake_step(void *state, const vs_world *world, const vs_game *game, double dt_s, vs_wheels *out) {
+  (void)world, (void)game;
+  shake_state *s = state;
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    shake_robot *r = &s->robot[i];
+    r->left_s -= dt_s;
+    if (r->left_s <= 0) shake_next(s, r);
+    out[i] = r->wheels;
+  }
+}
+
+const vsss_player_api vs_player_shake = {
+    .version = VSSS_PLAYER_VERSION,
+    .name = "shake",
+    .rate_hz = VS_CAMERA_HZ,
+    .state_size = sizeof(shake_state),
+    .init = shake_init,
+    .step = shake_step,
 };

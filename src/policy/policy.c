@@ -62,13 +62,14 @@ static vs_status open_provided(vs_player *player, const scheme *s, vs_error *err
 }
 
 // The program's table. Rows after the built-in ones are registered once at start, before any thread.
-static scheme table[7 + MAX_PROVIDERS + 1] = {
+static scheme table[8 + MAX_PROVIDERS + 1] = {
     {"onnx:", "FILE, a trained policy; without a file the one that comes with vsss", open_onnx, NULL, NULL},
     {"emc:", "VSSS-EMC of 2019; ?pid=1: through its own wheel PID", open_builtin, &vs_player_emc, NULL},
     {"inf:", "PY-VSSS-INF", open_builtin, &vs_player_inf, NULL},
     {"emc22:", "VSSS-EMC of 2022", open_builtin, &vs_player_emc22, NULL},
     {"random:", "uniform wheel speeds", open_builtin, &vs_player_random, NULL},
     {"zero:", "stands still", open_builtin, &vs_player_zero, NULL},
+    {"shake:", "swings each robot a little, to measure it (identify, latency)", open_builtin, &vs_player_shake, NULL},
     {"plugin:", "FILE.so, a team's own strategy (include/vsss/player.h)", open_plugin, NULL, NULL},
 };
 

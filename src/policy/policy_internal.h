@@ -41,7 +41,8 @@ vs_status vs_player_of_remote(const char *uri, const vs_player_remote *calls, vo
 void *vs_player_handle(vs_player *player, const vs_player_remote *calls); // NULL: not one of these calls
 
 // Built-in players.
-extern const vsss_player_api vs_player_emc, vs_player_inf, vs_player_emc22, vs_player_random, vs_player_zero;
+extern const vsss_player_api vs_player_emc, vs_player_inf, vs_player_emc22, vs_player_random, vs_player_zero,
+    vs_player_shake;
 
 // Reads "key=value&key=value" by a schema (config.h); an empty schema allows none. Errors name scheme, key and the
 // known keys.

@@ -125,6 +125,7 @@ vs_status vs_rig_step(vs_rig *r, vs_rig_step_result *out, vs_error *err) {
 
 vs_rig_stats vs_rig_get_stats(vs_rig *r) {
   r->stats.commands = r->robots.taken;
+  r->stats.act_s = r->robots.acted ? 1e-6 * (double)r->robots.acted_us / (double)r->robots.acted : 0;
   r->stats.camera = vs_frame_server_get_stats(r->camera);
   return r->stats;
 }

@@ -75,6 +75,7 @@ static vs_status write_calib(vs_rig *r, vs_error *err) {
 static vs_status open_radio(vs_rig *r, vs_error *err) {
   vs_status s = vs_robots_open(&r->robots, r->def.radio_id, &r->def.key, vs_clock_monotonic_us(), err);
   if (s != VS_OK) return s;
+  r->robots.delay_frames = r->def.delay_frames;
   if (symlink(vs_pty_path(r->robots.pty), r->radio_path))
     return vs_fail(err, VS_FAIL, "%s: %s", r->radio_path, strerror(errno));
   vs_venue_mine(r->radio_path, &r->radio_file);

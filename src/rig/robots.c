@@ -34,9 +34,10 @@ static void hear(vs_robots *r, int64_t now_us) {
   size_t n;
   while ((n = vs_pty_read(r->pty, bytes, sizeof bytes)) > 0)
     for (int i = 0; i < VS_TEAM_SIZE; i++) {
-      uint16_t before = r->firmware[i].rx_ok;
+      const vs_firmware before = r->firmware[i];
       vs_firmware_receive(&r->firmware[i], bytes, n, milliseconds(now_us));
-      r->taken += (uint16_t)(r->firmware[i].rx_ok - before);
+      r->taken += (uint16_t)(r->firmware[i].rx_ok - before.rx_ok);
+      if (r->firmware[i].left != before.left || r->firmware[i].right != before.right) r->came_us[i] = now_us;
     }
 }
 
@@ -66,8 +67,16 @@ void vs_robots_serve(vs_robots *r, const vs_wheels measured[VS_TEAM_SIZE], int64
 }
 
 void vs_robots_wheels(vs_robots *r, int64_t now_us, vs_wheels out[VS_TEAM_SIZE]) {
+  r->newest = (r->newest + 1) % VS_ROBOTS_LATE_MAX;
+  int now = (r->newest + VS_ROBOTS_LATE_MAX - r->delay_frames) % VS_ROBOTS_LATE_MAX;
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     vs_firmware_drive drive = vs_firmware_tick(&r->firmware[i], milliseconds(now_us));
-    out[i] = (vs_wheels){vs_radio_radps(drive.left), vs_radio_radps(drive.right)};
+    r->late[r->newest][i] = (vs_wheels){vs_radio_radps(drive.left), vs_radio_radps(drive.right)};
+    r->late_us[r->newest][i] = r->came_us[i];
+    r->came_us[i] = 0;
+    out[i] = r->late[now][i];
+    if (!r->late_us[now][i]) continue;
+    r->acted++;
+    r->acted_us += now_us - r->late_us[now][i];
   }
 }
