@@ -100,20 +100,6 @@ static vs_status fill(const options *o, vs_field_config *config, vs_error *err) 
   return VS_OK;
 }
 
-// A rig lays the calibration of its camera beside the camera.
-static void use_rig_calib(const options *o, vs_field_def *def, char *path, size_t size) {
-  if (o->calib || strncmp(o->camera, "rig:", 4)) return;
-  const char *camera = o->camera + 4, *slash = strrchr(camera, '/');
-  if (!*camera)
-    vs_rig_default_path("calib.ini", path, size);
-  else
-    snprintf(path, size, "%.*scalib.ini", slash ? (int)(slash - camera + 1) : 0, camera);
-  FILE *there = fopen(path, "r");
-  if (!there) return;
-  fclose(there);
-  def->calib = path;
-}
-
 static void print_setup(const vs_field *field, const vs_field_def *def, const char *note) {
   const vs_camera_info *camera = vs_field_camera(field);
   printf("camera  %s  %dx%d", camera->name, camera->width, camera->height);
@@ -241,7 +227,7 @@ int cmd_field(int argc, char **argv) {
     return s == VS_OK ? 0 : vs_cli_error("field", &err);
   }
   config.def.record = is_table(o.record) ? NULL : o.record;
-  use_rig_calib(&o, &config.def, rig_calib, sizeof rig_calib);
+  if (!o.calib && vs_field_rig_calib(o.camera, rig_calib, sizeof rig_calib)) config.def.calib = rig_calib;
   vs_cli_catch_interrupts();
   vs_cli_before_the_end(vs_sender_last_stop);
   vs_sender_stop_at_crash();

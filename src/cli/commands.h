@@ -12,6 +12,7 @@ int cmd_eval(int argc, char **argv);
 int cmd_plot(int argc, char **argv);
 
 int cmd_bridge(int argc, char **argv);
+int cmd_doctor(int argc, char **argv);
 int cmd_identify(int argc, char **argv);
 int cmd_latency(int argc, char **argv);
 int cmd_replay(int argc, char **argv);

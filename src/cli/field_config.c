@@ -2,9 +2,11 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli.h"
 #include "vsss/config.h"
+#include "vsss/frame_stream.h"
 #include "vsss/paths.h"
 #include "vsss/vision_config.h"
 
@@ -72,4 +74,14 @@ vs_status vs_field_config_load(const char *path, vs_field_config *c, vs_error *e
 
 vs_status vs_field_config_parse(const char *name, const char *text, vs_field_config *c, vs_error *err) {
   return take(name, text, c, err);
+}
+
+bool vs_field_rig_calib(const char *camera, char *path, size_t size) {
+  if (!camera || strncmp(camera, "rig:", 4) != 0) return false;
+  const char *rest = camera + 4, *slash = strrchr(rest, '/');
+  if (!*rest)
+    vs_rig_default_path("calib.ini", path, size);
+  else
+    snprintf(path, size, "%.*scalib.ini", slash ? (int)(slash - rest + 1) : 0, rest);
+  return access(path, R_OK) == 0;
 }

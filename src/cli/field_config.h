@@ -19,4 +19,7 @@ vs_status vs_field_config_load(const char *path, vs_field_config *out, vs_error 
 // The same from the text of such a file.
 vs_status vs_field_config_parse(const char *name, const char *text, vs_field_config *out, vs_error *err);
 
+// A rig lays the calibration of its camera beside the camera. False: the camera is none of a rig, or there is none.
+bool vs_field_rig_calib(const char *camera, char *path, size_t size);
+
 #endif

@@ -19,6 +19,7 @@ static const command commands[] = {
     {"calibrate", cmd_calibrate, "make the file that turns pixels into metres; print tags"},
     {"detect", cmd_detect, "find tags in a picture and print their corners"},
     {"field", cmd_field, "play on a real field: camera, policy, radio"},
+    {"doctor", cmd_doctor, "is everything ready to play? each thing ok, or how to mend it"},
     {"rig", cmd_rig, "a venue without hardware, for field to play in"},
     {"serve", cmd_serve, "teams' own programs play here, over the simulation league's network"},
     {"league", cmd_league, "clubs play each other: players and teams' own programs; table, page, logs"},
