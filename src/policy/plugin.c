@@ -9,8 +9,8 @@
 
 #define ENTRY "vsss_player"
 
-// A plugin's own functions win over the program's of the same name. (The address sanitizer cannot load that way.)
-#ifdef __SANITIZE_ADDRESS__
+// A plugin's own functions win over the program's of the same name. (The sanitizers cannot load that way.)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define LOAD_FLAGS (RTLD_NOW | RTLD_LOCAL)
 #else
 #define LOAD_FLAGS (RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND)
