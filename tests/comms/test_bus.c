@@ -1,4 +1,5 @@
 // Tests src/comms/bus.c, bus_url.c, bus_encode.c and bus_decode.c.
+#define _GNU_SOURCE // memmem
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -203,6 +204,31 @@ static void cut_or_lengthened_messages_are_refused(void **state) {
   }
 }
 
+// The generated decoders hand out texts as they stand in the message: one without its final zero would be read beyond it.
+static void a_text_without_its_end_is_refused(void **state) {
+  (void)state;
+  if (no_lcm()) return;
+  static const vs_channel last_is_text[] = {VS_CH_CMD, VS_CH_REFEREE, VS_CH_POLICY, VS_CH_RADIO, VS_CH_STATS};
+  vs_message in, out;
+  uint8_t bytes[VS_MESSAGE_MAX_BYTES];
+  for (size_t i = 0; i < sizeof last_is_text / sizeof *last_is_text; i++) {
+    fill(last_is_text[i], &in);
+    size_t size = vs_message_encode(&in, bytes, sizeof bytes);
+    assert_int_equal(bytes[size - 1], 0);
+    bytes[size - 1] = 'x';
+    vs_error err = {0};
+    assert_int_equal(vs_message_decode(last_is_text[i], bytes, size, &out, NULL, &err), VS_FAIL);
+    assert_non_null(strstr(err.text, "a damaged message of"));
+  }
+  // In the middle of a message: an image's bytes come after its format.
+  fill(VS_CH_IMAGE, &in);
+  size_t size = vs_message_encode(&in, bytes, sizeof bytes), length = strlen(in.as.image.format);
+  uint8_t *format = memmem(bytes, size, in.as.image.format, length + 1);
+  assert_non_null(format);
+  format[length] = 'x';
+  assert_int_equal(vs_message_decode(VS_CH_IMAGE, bytes, size, &out, image_buffer, NULL), VS_FAIL);
+}
+
 static void damaged_bytes_never_crash_the_decoder(void **state) {
   (void)state;
   if (no_lcm()) return;
@@ -356,6 +382,7 @@ int main(void) {
       cmocka_unit_test(fields_keep_their_meaning),
       cmocka_unit_test(golden_messages_of_another_implementation_are_read_and_written),
       cmocka_unit_test(cut_or_lengthened_messages_are_refused),
+      cmocka_unit_test(a_text_without_its_end_is_refused),
       cmocka_unit_test(damaged_bytes_never_crash_the_decoder),
       cmocka_unit_test(another_version_of_a_type_is_refused_by_name),
       cmocka_unit_test(published_messages_reach_their_channel_only),
