@@ -11,16 +11,18 @@ typedef struct bus_watch {
   const char *uri[VS_TEAMS];
   int32_t seq[VS_CHANNELS];
   int64_t start_us, capture_us; // since the epoch: when this match began, and its present moment in simulated time
-  vs_message message;           // scratch
+  int64_t sent, lost;
+  vs_message message; // scratch
 } bus_watch;
 
-// A message that is lost is lost: the match goes on.
+// A message that cannot be sent is counted, and the match goes on.
 static void send(bus_watch *w, vs_channel channel) {
   w->message.channel = channel;
   w->message.utime_us = 0;
   w->message.utime_capture_us = w->capture_us;
   w->message.seq = w->seq[channel]++;
-  vs_bus_publish(w->bus, &w->message, NULL);
+  w->sent++;
+  w->lost += vs_bus_publish(w->bus, &w->message, NULL) != VS_OK;
 }
 
 static void send_worlds(bus_watch *w, const vs_env *env) {
@@ -95,6 +97,9 @@ static vs_status frame(void *state, const vs_watch_view *view, vs_error *err) {
 static vs_status close_bus(void *state, vs_error *err) {
   (void)err;
   bus_watch *w = state;
+  if (w->lost)
+    fprintf(stderr, "vsss sim: %lld of %lld messages could not be sent over %s\n", (long long)w->lost,
+            (long long)w->sent, vs_bus_url(w->bus));
   vs_bus_close(w->bus);
   free(w);
   return VS_OK;

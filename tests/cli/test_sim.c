@@ -2,6 +2,7 @@
 #include <stdbool.h>
 
 #include "assert_near.h"
+#include "cli_bus.h"
 #include "interrupt_vsss.h"
 #include "vsss/bus.h"
 
@@ -147,6 +148,21 @@ static void what_is_published_can_be_replayed(void **state) {
   assert_int_equal(system(remove), 0);
 }
 
+// 4 simulated seconds at 10 times real time are 0.4 s, where they would be 0.02 s.
+static void messages_over_udp_go_out_at_a_pace_that_listeners_keep(void **state) {
+  (void)state;
+  vs_bus *bus = test_bus_open();
+  if (!bus) skip();
+  vs_bus_close(bus);
+  char arguments[256];
+  snprintf(arguments, sizeof arguments, "sim --seconds 4 --drive planar --blue zero: --yellow zero: --json --lcm '%s'",
+           test_bus_url());
+  play(&run, arguments);
+  assert_true(strtod(value_of(run.out, "wall_s"), NULL) > 0.39);
+  assert_non_null(strstr(run.err, "10 times real time"));
+  assert_null(strstr(run.err, "could not be sent"));
+}
+
 static void help_names_every_flag(void **state) {
   (void)state;
   play(&run, "sim --help");
@@ -191,6 +207,7 @@ int main(void) {
       cmocka_unit_test(realtime_keeps_the_pace_of_the_clock),
       cmocka_unit_test(an_interrupted_match_prints_what_is_done),
       cmocka_unit_test(what_is_published_can_be_replayed),
+      cmocka_unit_test(messages_over_udp_go_out_at_a_pace_that_listeners_keep),
       cmocka_unit_test(help_names_every_flag),
       cmocka_unit_test(bad_requests_are_refused_in_one_line),
       cmocka_unit_test(an_lcm_url_that_fails_is_an_error),
