@@ -43,6 +43,7 @@ typedef struct vs_field_def {
   int baud;
   uint8_t radio_id[VS_TEAM_SIZE]; // number on the air of robot i
   vs_radio_key key;               // of our team on the air
+  const vs_wire *wire;            // what the robots speak; NULL: our own protocol
   double camera_height_m;
   double ball_hold_s; // a ball never seen, or not for longer, stops the robots; 0: they play on with its last place
   vs_camera_def camera_def;

@@ -7,6 +7,7 @@
 #include "vsss/radio_codec.h"
 #include "vsss/radio_serial.h"
 #include "vsss/status.h"
+#include "vsss/wire.h"
 #include "vsss/world.h"
 
 #ifdef __cplusplus
@@ -26,6 +27,7 @@ typedef struct vs_radio_robot_state {
 // One team's link. Plain data; times are of the monotonic clock.
 typedef struct vs_radio_link {
   uint8_t id[VS_TEAM_SIZE]; // number on the air of robot i
+  const vs_wire *wire;      // NULL: our own protocol
   uint64_t counter;         // of the next frame; its low byte is the seq
   bool have_command, stop;
   vs_wheels wheels[VS_TEAM_SIZE];
@@ -49,13 +51,17 @@ void vs_radio_link_set_key(vs_radio_link *link, const vs_radio_key *key, int64_t
 // A new command; decided_us: the moment of the frame it was decided on. stop: brake. A wheel that is not finite is a stop.
 void vs_radio_link_command(vs_radio_link *link, const vs_wheels wheels[VS_TEAM_SIZE], bool stop, int64_t decided_us);
 
+// Another team's protocol, or ours. VS_USAGE: a robot's number is none of it.
+vs_status vs_radio_link_set_wire(vs_radio_link *link, const vs_wire *wire, vs_error *err);
+
+// All that write want VS_WIRE_BYTES_MAX bytes; with our own protocol VS_RADIO_FRAME_MAX do.
 // Writes the frame that is due at now and returns its size; 0: none is due before next_us. Never catches up in bursts.
-size_t vs_radio_link_due(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RADIO_FRAME_MAX]);
+size_t vs_radio_link_due(vs_radio_link *link, int64_t now_us, uint8_t *out);
 // One STOP frame, due or not.
-size_t vs_radio_link_stop(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RADIO_FRAME_MAX]);
+size_t vs_radio_link_stop(vs_radio_link *link, int64_t now_us, uint8_t *out);
 
 // The same without touching the link, for a program that dies: its number is `ahead` of the next frame's.
-size_t vs_radio_link_last_stop(const vs_radio_link *link, uint8_t ahead, uint8_t out[VS_RADIO_FRAME_MAX]);
+size_t vs_radio_link_last_stop(const vs_radio_link *link, uint8_t ahead, uint8_t *out);
 
 void vs_radio_link_receive(vs_radio_link *link, const uint8_t *bytes, size_t size, int64_t now_us);
 

@@ -27,7 +27,7 @@ typedef struct vs_serial_stats {
 vs_status vs_serial_open(const char *device, int baud, vs_serial **out, vs_error *err);
 void vs_serial_close(vs_serial *serial); // NULL is allowed
 
-// Sends bytes (one frame, <= 64) or drops them; true: sent. What a full buffer cut off is sent before anything else.
+// Sends bytes (one round, <= 96) or drops them; true: sent. What a full buffer cut off is sent before anything else.
 // now_us: monotonic, for the pause between attempts to reopen (50 ms, doubling to 0.2 s).
 bool vs_serial_write(vs_serial *serial, const uint8_t *bytes, size_t size, int64_t now_us);
 // Reads what is there, up to size bytes; 0: nothing.

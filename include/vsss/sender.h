@@ -20,6 +20,7 @@ typedef struct vs_sender_def {
   int baud;
   uint8_t id[VS_TEAM_SIZE]; // number on the air of robot i
   vs_radio_key key;
+  const vs_wire *wire; // NULL: our own protocol
 } vs_sender_def;
 vs_status vs_sender_new(const vs_sender_def *def, vs_sender **out, vs_error *err);
 // Sends VS_RADIO_STOP_FRAMES stops and waits until they have left. NULL is allowed.

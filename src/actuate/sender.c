@@ -57,7 +57,7 @@ void vs_sender_last_stop(void) {
       const vs_sender *s = open_senders[i];
       int fd = s && s->serial ? vs_serial_fd(s->serial) : -1;
       if (fd < 0) continue;
-      uint8_t bytes[VS_RADIO_FRAME_MAX];
+      uint8_t bytes[VS_WIRE_BYTES_MAX];
       size_t size = vs_radio_link_last_stop(&s->link, (uint8_t)(SEQ_AHEAD + frame), bytes);
       ssize_t written = write(fd, bytes, size); // a full buffer is the watchdog's to end
       (void)written;
@@ -97,7 +97,7 @@ static void *repeat(void *sender) {
     pthread_mutex_lock(&s->lock);
     bool stop = s->stop;
     int64_t now_us = vs_clock_monotonic_us();
-    uint8_t bytes[VS_RADIO_FRAME_MAX];
+    uint8_t bytes[VS_WIRE_BYTES_MAX];
     write_frame(s, bytes, vs_radio_link_due(&s->link, now_us, bytes), now_us);
     read_telemetry(s, now_us);
     int64_t next_us = s->link.next_us;
@@ -112,6 +112,10 @@ vs_status vs_sender_new(const vs_sender_def *def, vs_sender **out, vs_error *err
   vs_sender *s = calloc(1, sizeof *s);
   if (!s) return vs_fail(err, VS_FAIL, "out of memory");
   vs_status status = vs_radio_link_init(&s->link, def->id, err);
+  if (status == VS_OK && def->wire) status = vs_radio_link_set_wire(&s->link, def->wire, err);
+  if (status == VS_OK && def->key.set && s->link.wire)
+    status = vs_fail(err, VS_USAGE, "radio.key: wire %s has no place for it; leave it empty, or wire = vsss",
+                     def->wire->name);
   if (status == VS_OK && def->key.set) vs_radio_link_set_key(&s->link, &def->key, vs_clock_wall_us());
   if (status == VS_OK && def->device) status = vs_serial_open(def->device, def->baud, &s->serial, err);
   pthread_mutex_init(&s->lock, NULL);
@@ -135,7 +139,7 @@ void vs_sender_free(vs_sender *s) {
   pthread_mutex_unlock(&s->lock);
   pthread_join(s->thread, NULL);
   for (int i = 0; i < VS_RADIO_STOP_FRAMES && s->serial; i++) {
-    uint8_t bytes[VS_RADIO_FRAME_MAX];
+    uint8_t bytes[VS_WIRE_BYTES_MAX];
     int64_t now_us = vs_clock_monotonic_us();
     write_frame(s, bytes, vs_radio_link_stop(&s->link, now_us, bytes), now_us);
     vs_clock_sleep_until_us(now_us + LAST_FRAMES_US);
@@ -152,7 +156,7 @@ void vs_sender_command(vs_sender *s, const vs_wheels wheels[VS_TEAM_SIZE], bool 
   vs_radio_link_command(&s->link, wheels, stop, capture_us);
   if (now) {
     int64_t now_us = vs_clock_monotonic_us();
-    uint8_t bytes[VS_RADIO_FRAME_MAX];
+    uint8_t bytes[VS_WIRE_BYTES_MAX];
     s->link.next_us = now_us; // out of turn; the repeats count from here
     write_frame(s, bytes, vs_radio_link_due(&s->link, now_us, bytes), now_us);
   }

@@ -144,6 +144,7 @@ static vs_status run(bridge *b, const vs_sender_def *radio, const char *url, boo
   if (s == VS_OK) {
     printf("bridge: %s commands from %s to %s; Ctrl-C stops the robots and ends\n", vs_team_name(b->team),
            vs_bus_url(b->bus), b->device);
+    if (radio->wire && radio->wire->lacks) printf("warning: wire %s: %s\n", radio->wire->name, radio->wire->lacks);
     if (!b->go) printf("the robots stand until they are told to go; keys: %s\n", VS_OPERATOR_KEYS);
     fflush(stdout);
     vs_cli_catch_interrupts();
@@ -166,7 +167,7 @@ static vs_status run(bridge *b, const vs_sender_def *radio, const char *url, boo
 }
 
 int cmd_bridge(int argc, char **argv) {
-  const char *device = NULL, *url = NULL, *team = "blue", *ids = NULL, *path = NULL;
+  const char *device = NULL, *url = NULL, *team = "blue", *ids = NULL, *path = NULL, *wire = NULL;
   int baud = 0;
   bool remote = false;
   static vs_field_config config;
@@ -176,6 +177,8 @@ int cmd_bridge(int argc, char **argv) {
       {"baud", VS_FLAG_INT, &baud, "N", "its speed; default: the configuration's", 0, 0},
       {"team", VS_FLAG_TEXT, &team, "TEAM", "whose commands: blue or yellow", 0, 0},
       {"ids", VS_FLAG_TEXT, &ids, "A,B,C", "the robots' numbers on the air; default: the configuration's", 0, 0},
+      {"wire", VS_FLAG_TEXT, &wire, "NAME",
+       "what they speak: vsss, pequi-xbee, sysmic, sysmic-vw, neon, unball; default: the configuration's", 0, 0},
       {"config", VS_FLAG_TEXT, &path, "FILE", "its [radio] has numbers and key; default: deploy/config/field.ini", 0,
        0},
       {"lcm-remote", VS_FLAG_SWITCH, &remote, NULL, "obey commands that another machine sends, too", 0, 0},
@@ -194,7 +197,9 @@ int cmd_bridge(int argc, char **argv) {
   if (s == VS_OK && strcmp(team, "blue") != 0 && strcmp(team, "yellow") != 0)
     s = vs_fail(&err, VS_USAGE, "--team %s: allowed are blue and yellow", team);
   if (s == VS_OK) s = vs_field_config_load(path, &config, &err);
-  vs_sender_def radio = {.device = device, .baud = baud ? baud : config.def.baud, .key = config.def.key};
+  vs_sender_def radio = {
+      .device = device, .baud = baud ? baud : config.def.baud, .key = config.def.key, .wire = config.def.wire};
+  if (s == VS_OK && wire && vs_wire_find(wire, &radio.wire, &err) != VS_OK) s = vs_fail_prefix(&err, "--wire");
   memcpy(radio.id, config.def.radio_id, sizeof radio.id);
   if (s == VS_OK && ids) s = parse_ids(ids, radio.id, &err);
   b.team = strcmp(team, "yellow") ? VS_BLUE : VS_YELLOW;

@@ -16,7 +16,8 @@
 #include "world_csv.h"
 
 typedef struct options {
-  const char *camera, *radio, *policy, *team, *attack, *calib, *config, *lcm, *stats, *record, *fallback, *referee;
+  const char *camera, *radio, *policy, *team, *attack, *calib, *config, *lcm, *stats, *record, *fallback, *referee,
+      *wire;
   const char *own_tags, *their_tags;
   double seconds;
   uint64_t seed;
@@ -36,6 +37,8 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
   const vs_flag flags[] = {
       {"camera", VS_FLAG_TEXT, &o->camera, "SOURCE", camera_help, 0, 0},
       {"radio", VS_FLAG_TEXT, &o->radio, "DEVICE", "serial device of the robots' radio, or firasim:, travesim:", 0, 0},
+      {"wire", VS_FLAG_TEXT, &o->wire, "NAME",
+       "what the robots speak: vsss, pequi-xbee, sysmic, sysmic-vw, neon, unball; default: field.ini's", 0, 0},
       {"policy", VS_FLAG_TEXT, &o->policy, "URI", "who decides; default: field.ini's", 0, 0},
       {"go", VS_FLAG_SWITCH, &o->go, NULL, "the robots may move at once: for rigs and unattended tests", 0, 0},
       {"referee", VS_FLAG_TEXT, &o->referee, "lcm|FILE",
@@ -78,6 +81,7 @@ static vs_status fill(const options *o, vs_field_config *config, vs_error *err) 
   if (o->radio) def->radio = o->radio;
   if (o->policy) def->policy = o->policy;
   if (o->fallback) def->fallback = o->fallback;
+  if (o->wire && vs_wire_find(o->wire, &def->wire, err) != VS_OK) return vs_fail_prefix(err, "--wire");
   if (o->team) s = vs_cli_team("--team", o->team, &def->team, err);
   if (s != VS_OK) return s;
   vs_mark own = def->detector.own, their = def->detector.their;
@@ -110,9 +114,12 @@ static void print_setup(const vs_field *field, const vs_field_def *def, const ch
          def->fallback ? def->fallback : "");
   if (def->radio)
     printf("radio   %s, %d baud, %s\n", def->radio, def->baud,
-           def->key.set ? "with our team's key" : "no key: the robots obey anybody on the channel (radio.key)");
+           def->wire && def->wire->encode ? def->wire->format
+           : def->key.set                 ? "with our team's key"
+                                          : "no key: the robots obey anybody on the channel (radio.key)");
   else
     printf("radio   none: a dry run, no robot is driven (--radio DEVICE)\n");
+  if (def->radio && def->wire && def->wire->lacks) printf("warning: wire %s: %s\n", def->wire->name, def->wire->lacks);
   if (camera->exposure_ms > 5.0) printf("warning: exposed longer than 5 ms tags blur and robots in motion are lost\n");
   if (!def->go) printf("robots  stand until they are told to go; keys: %s\n", VS_OPERATOR_KEYS);
   printf("%s", note);

@@ -10,7 +10,7 @@
 #include "vsss/paths.h"
 #include "vsss/vision_config.h"
 
-enum { ROWS = 120, OWN_ROWS = 15 };
+enum { ROWS = 120, OWN_ROWS = 16 };
 
 // text NULL: what the file at path holds.
 static vs_status load(const char *path, const char *text, vs_field_config *c, vs_error *err) {
@@ -28,6 +28,7 @@ static vs_status load(const char *path, const char *text, vs_field_config *c, vs
       {"radio.robot0_id", VS_CONFIG_INT, &c->radio_id[0], 0, 0, 255, "number on the air of robot 0"},
       {"radio.robot1_id", VS_CONFIG_INT, &c->radio_id[1], 0, 0, 255, "of robot 1"},
       {"radio.robot2_id", VS_CONFIG_INT, &c->radio_id[2], 0, 0, 255, "of robot 2"},
+      {"radio.wire", VS_CONFIG_TEXT, c->wire, sizeof c->wire, 0, 0, "what the robots speak"},
       {"radio.team_id", VS_CONFIG_INT, &c->team_id, 0, 0, 255, "the team's number on the air, with a key"},
       {"radio.key", VS_CONFIG_TEXT, c->key, sizeof c->key, 0, 0,
        "32 hexadecimal digits; empty: frames without a check"},
@@ -52,6 +53,7 @@ static vs_status take(const char *path, const char *text, vs_field_config *c, vs
   if (*c->fallback) d->fallback = c->fallback;
   if (*c->radio) d->radio = c->radio;
   for (int i = 0; i < VS_TEAM_SIZE; i++) d->radio_id[i] = (uint8_t)c->radio_id[i];
+  if (*c->wire && vs_wire_find(c->wire, &d->wire, err) != VS_OK) return vs_fail_prefix(err, "%s: radio", path);
   if (*c->key && !vs_radio_key_parse(c->team_id, c->key, &d->key))
     return vs_fail(err, VS_USAGE,
                    "%s: radio.key has %zu characters; expected 32 hexadecimal digits, such as those of "

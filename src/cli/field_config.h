@@ -10,7 +10,7 @@ typedef struct vs_field_config {
   char policy[256], fallback[256], radio[256], team[16], attack[8];
   vs_vision_words vision;
   int radio_id[VS_TEAM_SIZE], team_id;
-  char key[64];
+  char key[64], wire[24];
   char path[512]; // of the file
 } vs_field_config;
 

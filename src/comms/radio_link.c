@@ -21,6 +21,15 @@ void vs_radio_link_set_key(vs_radio_link *link, const vs_radio_key *key, int64_t
   link->counter = (uint64_t)(wall_us / 1000000) << 16 | (uint64_t)(wall_us % 1000000) * 65536 / 1000000;
 }
 
+vs_status vs_radio_link_set_wire(vs_radio_link *link, const vs_wire *wire, vs_error *err) {
+  for (int i = 0; i < VS_TEAM_SIZE; i++)
+    if (link->id[i] > wire->max_id)
+      return vs_fail(err, VS_USAGE, "robot %d has radio id %d, %s has 0 to %d", i, link->id[i], wire->name,
+                     wire->max_id);
+  link->wire = wire->encode ? wire : NULL;
+  return VS_OK;
+}
+
 void vs_radio_link_command(vs_radio_link *link, const vs_wheels wheels[VS_TEAM_SIZE], bool stop, int64_t decided_us) {
   link->have_command = true;
   link->stop = stop;
@@ -31,7 +40,9 @@ void vs_radio_link_command(vs_radio_link *link, const vs_wheels wheels[VS_TEAM_S
   }
 }
 
-static size_t write_command(const vs_radio_link *link, uint64_t counter, bool stop, uint8_t out[VS_RADIO_FRAME_MAX]) {
+static size_t write_command(const vs_radio_link *link, uint64_t counter, bool stop, uint8_t *out) {
+  static const vs_wheels still[VS_TEAM_SIZE];
+  if (link->wire) return link->wire->encode(link->id, stop ? still : link->wheels, out);
   vs_radio_frame frame = {.type = VS_RADIO_COMMAND};
   vs_radio_command *c = &frame.as.command;
   c->seq = (uint8_t)counter;
@@ -46,7 +57,7 @@ static size_t write_command(const vs_radio_link *link, uint64_t counter, bool st
   return vs_radio_encode_keyed(&frame, &link->decoder.key, out);
 }
 
-static size_t emit(vs_radio_link *link, bool stop, int64_t now_us, uint8_t out[VS_RADIO_FRAME_MAX]) {
+static size_t emit(vs_radio_link *link, bool stop, int64_t now_us, uint8_t *out) {
   uint64_t counter = link->counter++;
   link->sent_us[(uint8_t)counter] = now_us;
   link->stopping = stop;
@@ -54,7 +65,7 @@ static size_t emit(vs_radio_link *link, bool stop, int64_t now_us, uint8_t out[V
   return write_command(link, counter, stop, out);
 }
 
-size_t vs_radio_link_due(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RADIO_FRAME_MAX]) {
+size_t vs_radio_link_due(vs_radio_link *link, int64_t now_us, uint8_t *out) {
   if (now_us < link->next_us) return 0;
   link->next_us += VS_RADIO_PERIOD_US;
   if (link->next_us <= now_us) link->next_us = now_us + VS_RADIO_PERIOD_US;
@@ -62,11 +73,9 @@ size_t vs_radio_link_due(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RAD
   return emit(link, stop, now_us, out);
 }
 
-size_t vs_radio_link_stop(vs_radio_link *link, int64_t now_us, uint8_t out[VS_RADIO_FRAME_MAX]) {
-  return emit(link, true, now_us, out);
-}
+size_t vs_radio_link_stop(vs_radio_link *link, int64_t now_us, uint8_t *out) { return emit(link, true, now_us, out); }
 
-size_t vs_radio_link_last_stop(const vs_radio_link *link, uint8_t ahead, uint8_t out[VS_RADIO_FRAME_MAX]) {
+size_t vs_radio_link_last_stop(const vs_radio_link *link, uint8_t ahead, uint8_t *out) {
   return write_command(link, link->counter + ahead, true, out);
 }
 
@@ -86,6 +95,7 @@ static void heard(vs_radio_link *link, const vs_radio_telemetry *t, int64_t now_
 }
 
 void vs_radio_link_receive(vs_radio_link *link, const uint8_t *bytes, size_t size, int64_t now_us) {
+  if (link->wire) return; // what such a base says is for its own program
   for (size_t i = 0; i < size; i++) {
     vs_radio_frame frame;
     if (vs_radio_decode(&link->decoder, bytes[i], &frame) && frame.type == VS_RADIO_TELEMETRY)

@@ -13,7 +13,7 @@
 
 #include "vsss/clock.h"
 
-#define FRAME_MAX    64
+#define FRAME_MAX    96
 #define PAUSE_MIN_US 50000
 #define PAUSE_MAX_US 200000
 

@@ -134,7 +134,7 @@ vs_status vs_field_new(const vs_field_def *def, vs_field **out, char *note, size
   // Before anything starts a thread: the players' processes are forked from here.
   vs_status s = open_brain(f, def->policy, &f->control[0], err);
   if (s == VS_OK && def->fallback) s = open_brain(f, def->fallback, &f->control[1], err);
-  vs_sender_def radio = {.device = def->radio, .baud = def->baud, .key = def->key};
+  vs_sender_def radio = {.device = def->radio, .baud = def->baud, .key = def->key, .wire = def->wire};
   memcpy(radio.id, def->radio_id, sizeof radio.id);
   if (s == VS_OK && !def->rerun) s = vs_sender_new(&radio, &f->sender, err);
   if (s == VS_OK) s = open_eyes(f, note, note_size, err);

@@ -214,6 +214,8 @@ static void wrong_calls_are_named(void **state) {
   assert_refused("bridge --radio /dev/null --ids 1,2,256", 2, "0 to 255");
   assert_refused("bridge --radio /dev/null --ids 1,2,1", 2, "same radio id 1");
   assert_refused("bridge --radio /dev/null --baud 7", 2, "baud 7");
+  assert_refused("bridge --radio /dev/null --wire morse", 2, "--wire: wire 'morse': expected one of vsss, pequi-xbee");
+  assert_refused("bridge --radio /dev/null --wire unball --ids 1,2,3", 2, "robot 2 has radio id 3, unball has 0 to 2");
 }
 
 int main(void) {
