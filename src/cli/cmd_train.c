@@ -3,6 +3,7 @@
 #include <limits.h>
 #include <math.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,9 +31,10 @@ typedef struct options {
 typedef struct session {
   const options *opt;
   char folder[PATH_MAX - 64], command[1024];
-  vs_group *group; // NULL: alone
-  bool first;      // rank 0: shows, logs, saves
-  bool continued;  // --resume of this folder
+  vs_group *group;   // NULL: alone
+  atomic_bool first; // rank 0: shows, logs, saves
+  bool continued;    // --resume of this folder
+  atomic_bool ready; // train is there: from here on an interrupt may save it
   vs_train *train;
   vs_journal *journal;
   vs_train_report report;
@@ -197,7 +199,7 @@ static void announce_stop(void *context) {
   if (s->first)
     fprintf(stderr,
             "%svsss train: stopping after this update; once more, and what was learnt before it is saved at once\n",
-            s->progress.terminal ? "\n" : "");
+            isatty(STDERR_FILENO) ? "\n" : ""); // below the line of progress
 }
 
 // At the second: saves the state before this update, which is in memory.
@@ -209,8 +211,9 @@ static void save_now(void *context) {
   vs_error err = {0};
   pthread_mutex_lock(&s->alive);
   snprintf(path, sizeof path, "%s/checkpoint", s->folder);
-  if (!s->train || vs_train_save_kept(s->train, path, &update, &err) != VS_OK)
-    fprintf(stderr, "vsss train: %s\n", s->train ? err.text : "nothing to save yet");
+  bool ready = s->ready;
+  if (!ready || vs_train_save_kept(s->train, path, &update, &err) != VS_OK)
+    fprintf(stderr, "vsss train: %s\n", ready ? err.text : "nothing to save yet");
   else
     fprintf(stderr, "vsss train: saved as it was after update %.0f: --resume %s goes on\n", update, s->folder);
 }
@@ -292,6 +295,7 @@ static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
   if (status == VS_OK) status = vs_group_open(&s.group, err);
   s.first = vs_group_rank(s.group) == 0;
   if (status == VS_OK) status = prepare(&s, &def, err);
+  s.ready = status == VS_OK;
   if (status == VS_OK) status = begin(&s, err);
   if (status == VS_OK && s.first) {
     if (s.group) printf("%d ranks, each:\n", vs_group_size(s.group));
@@ -311,6 +315,7 @@ static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
   }
   pthread_mutex_lock(&s.alive); // for good: an interrupt that comes too late waits for the end
   vs_journal_close(s.journal);
+  s.ready = false;
   vs_train_free(s.train);
   if (status != VS_OK && s.group) vs_cli_error("train", err); // said now: closing ends this process too
   vs_group_close(s.group, status != VS_OK);

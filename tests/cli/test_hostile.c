@@ -185,12 +185,12 @@ static void a_hang_up_ends_a_series_in_order(void **state) {
   snprintf(arguments, sizeof arguments, "eval --blue zero: --against emc: --matches 1000000 --seconds 10 --json %s/hup",
            folder);
   run(&o, "timeout -s HUP 2", arguments, ">/dev/null");
-  assert_int_equal(o.status, 124); // of timeout
-  snprintf(arguments, sizeof arguments, "tail -c 4 %s/hup", folder);
+  assert_int_equal(o.status, 124);                                   // of timeout
+  snprintf(arguments, sizeof arguments, "tail -c 3 %s/hup", folder); // "]}": a slow machine has played none
   FILE *f = popen(arguments, "r");
   assert_non_null(fgets(line, sizeof line, f));
   pclose(f);
-  assert_string_equal(line, "}]}\n");
+  assert_string_equal(line, "]}\n");
 }
 
 static void a_name_without_its_colon_is_understood(void **state) {
