@@ -278,8 +278,11 @@ static const char *default_blue(void) {
   return "emc:";
 }
 
+// Of the scripted players the one that has the largest share of the goals against our policy (release.md).
+#define DEFAULT_YELLOW "emc22:"
+
 int cmd_sim(int argc, char **argv) {
-  sim_command c = {.match = vs_match_flags_default(), .uri = {NULL, "inf:"}, .matches = 1};
+  sim_command c = {.match = vs_match_flags_default(), .uri = {NULL, DEFAULT_YELLOW}, .matches = 1};
   const vs_flag flags[] = {
       {"blue", VS_FLAG_TEXT, &c.uri[VS_BLUE], "URI", "player that attacks +x [onnx:, our policy]", 0, 0},
       {"yellow", VS_FLAG_TEXT, &c.uri[VS_YELLOW], "URI", "player that attacks -x", 0, 0},

@@ -50,7 +50,8 @@ static void a_match_shows_its_events_and_a_table(void **state) {
   play(&run, "sim --seconds 3");
   // Our policy, or, where this build cannot play it, EMC and a word about it.
   bool told = strstr(run.err, "emc: plays blue: ") != NULL;
-  assert_non_null(strstr(run.out, told ? "emc: (blue) against inf: (yellow)" : "onnx: (blue) against inf: (yellow)"));
+  assert_non_null(
+      strstr(run.out, told ? "emc: (blue) against emc22: (yellow)" : "onnx: (blue) against emc22: (yellow)"));
   assert_true(!told || strstr(run.err, "no ONNX Runtime"));
   assert_non_null(strstr(run.out, "0.00 s  kick-off"));
   assert_non_null(strstr(run.out, "3.00 s  end"));
