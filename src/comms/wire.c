@@ -18,18 +18,29 @@ typedef struct text {
   size_t left;
 } text;
 
-static void put(text *t, const char *format, long value, long rest) {
-  int n = snprintf(t->at, t->left, format, value, rest);
-  size_t used = n > 0 && (size_t)n < t->left ? (size_t)n : 0;
-  t->at += used;
-  t->left -= used;
+static void put_word(text *t, const char *word) {
+  size_t length = strlen(word);
+  if (length >= t->left) return;
+  memcpy(t->at, word, length);
+  t->at += length;
+  t->left -= length;
+}
+
+static void put_number(text *t, long value) {
+  char digits[24];
+  snprintf(digits, sizeof digits, "%ld", value);
+  put_word(t, digits);
 }
 
 // value with so many decimals, without the locale's comma.
 static void put_decimal(text *t, double value, int decimals) {
-  long scale = decimals == 2 ? 100 : 10000, fixed = lround(value * (double)scale), whole = labs(fixed);
-  if (fixed < 0) put(t, "-", 0, 0);
-  put(t, decimals == 2 ? "%ld.%02ld" : "%ld.%04ld", whole / scale, whole % scale);
+  long scale = 1;
+  for (int i = 0; i < decimals; i++) scale *= 10;
+  long fixed = lround(value * (double)scale), rest = labs(fixed) % scale;
+  if (fixed < 0) put_word(t, "-");
+  put_number(t, labs(fixed) / scale);
+  put_word(t, ".");
+  for (long digit = scale / 10; digit > 0; digit /= 10) put_number(t, rest / digit % 10);
 }
 
 // EMC's robots: an XBee in API mode 1, one unicast each: frame type 0x01, no answer wanted (frame id 0), the robot's number as
@@ -40,7 +51,7 @@ static size_t pequi(const uint8_t id[VS_TEAM_SIZE], const vs_wheels wheels[VS_TE
     char speeds[24];
     text t = {speeds, sizeof speeds};
     put_decimal(&t, rim_mps(wheels[i].right_radps), 2);
-    put(&t, ";", 0, 0);
+    put_word(&t, ";");
     put_decimal(&t, rim_mps(wheels[i].left_radps), 2);
     size_t length = (size_t)(t.at - speeds), payload = 5 + length;
     uint8_t *frame = out + size, sum = 0;
@@ -59,8 +70,10 @@ enum { SYSMIC_SLOTS = 5 };
 static size_t put_slots(const long slot[SYSMIC_SLOTS][2], uint8_t *out) {
   text t = {(char *)out, VS_WIRE_BYTES_MAX};
   for (int i = 0; i < SYSMIC_SLOTS; i++) {
-    put(&t, "%ld,%ld", slot[i][0], slot[i][1]);
-    put(&t, i + 1 < SYSMIC_SLOTS ? "," : "\n", 0, 0);
+    put_number(&t, slot[i][0]);
+    put_word(&t, ",");
+    put_number(&t, slot[i][1]);
+    put_word(&t, i + 1 < SYSMIC_SLOTS ? "," : "\n");
   }
   return (size_t)(t.at - (char *)out);
 }
@@ -88,7 +101,7 @@ static size_t sysmic_vw(const uint8_t id[VS_TEAM_SIZE], const vs_wheels wheels[V
 // <id,v,w,...>, by ascending id.
 static size_t neon(const uint8_t id[VS_TEAM_SIZE], const vs_wheels wheels[VS_TEAM_SIZE], uint8_t *out) {
   text t = {(char *)out, VS_WIRE_BYTES_MAX};
-  put(&t, "<", 0, 0);
+  put_word(&t, "<");
   int last = -1;
   for (int k = 0; k < VS_TEAM_SIZE; k++) {
     int next = -1;
@@ -96,12 +109,14 @@ static size_t neon(const uint8_t id[VS_TEAM_SIZE], const vs_wheels wheels[VS_TEA
       if (id[i] > last && (next < 0 || id[i] < id[next])) next = i;
     if (next < 0) break;
     last = id[next];
-    put(&t, k ? ",%ld," : "%ld,", last, 0);
+    if (k) put_word(&t, ",");
+    put_number(&t, last);
+    put_word(&t, ",");
     put_decimal(&t, forward_mps(wheels[next]), 4);
-    put(&t, ",", 0, 0);
+    put_word(&t, ",");
     put_decimal(&t, turning_radps(wheels[next]), 4);
   }
-  put(&t, ">", 0, 0);
+  put_word(&t, ">");
   return (size_t)(t.at - (char *)out);
 }
 
