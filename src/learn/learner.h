@@ -1,5 +1,5 @@
 // The PPO learner: parameters, Adam, and the update from one batch of transitions. The gradient of a minibatch comes
-// from our own kernels, or from libtorch (learner_torch.cpp) as their oracle.
+// from our own kernels, or from libtorch (gradient_torch.cpp) as their oracle.
 #ifndef VSSS_LEARN_LEARNER_H
 #define VSSS_LEARN_LEARNER_H
 
