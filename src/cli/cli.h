@@ -60,6 +60,7 @@ int vs_cli_error(const char *command, const vs_error *err);
 // called; a second signal ends the program at once. And once standard output cannot be written any more.
 void vs_cli_catch_interrupts(void);
 bool vs_cli_interrupted(void);
+bool vs_cli_go_on(void *unused); // the opposite, as vs_series_def and vs_train_eval_def want it
 // What that second signal still does first; async-signal-safe.
 void vs_cli_before_the_end(void (*act)(void));
 // The same without disturbing a thread that computes: called before any other is started, blocks these signals in all and

@@ -87,11 +87,6 @@ static vs_status make_pairings(eval_command *c, vs_error *err) {
   return VS_OK;
 }
 
-static bool go_on(void *context) {
-  (void)context;
-  return !vs_cli_interrupted();
-}
-
 static bool match_done(void *context, int index, const vs_match_result *result) {
   (void)index;
   eval_command *c = context;
@@ -133,7 +128,7 @@ static vs_status play_pairing(eval_command *c, const vs_env_def *env, vs_error *
                        .threads = c->match.threads,
                        .seed = c->match.seed,
                        .progress = match_done,
-                       .go_on = go_on,
+                       .go_on = vs_cli_go_on,
                        .context = c};
   for (int t = 0; t < VS_TEAMS; t++) def.env.player[t] = p->uri[t];
   vs_status s = vs_series_play(&def, p->results, err);

@@ -175,11 +175,6 @@ static vs_status play_one_after_another(sim_command *c, vs_error *err) {
   return close_watchers(c, s, err);
 }
 
-static bool go_on(void *context) {
-  (void)context;
-  return !vs_cli_interrupted();
-}
-
 static bool match_done(void *context, int index, const vs_match_result *result) {
   (void)index;
   sim_command *c = context;
@@ -198,7 +193,7 @@ static vs_status play_over_threads(sim_command *c, vs_error *err) {
                        .threads = c->match.threads,
                        .seed = c->match.seed,
                        .progress = match_done,
-                       .go_on = go_on,
+                       .go_on = vs_cli_go_on,
                        .context = c};
   return vs_series_play(&def, c->results, err);
 }

@@ -145,18 +145,13 @@ static vs_status imitate(session *s, vs_error *err) {
   return status;
 }
 
-static bool not_interrupted(void *context) {
-  (void)context;
-  return !vs_cli_interrupted();
-}
-
 static vs_status evaluate_against(session *s, const char *opponent, const char *policy, vs_error *err) {
   const vs_train_eval_def def = {.policy_file = policy,
                                  .opponent = opponent,
                                  .matches = s->opt->eval_matches,
                                  .threads = vs_train_settings(s->train)->threads,
                                  .seed = 1,
-                                 .go_on = not_interrupted};
+                                 .go_on = vs_cli_go_on};
   vs_train_score eval;
   vs_status status = vs_train_evaluate(&def, &eval, err);
   if (status != VS_OK || eval.matches < s->opt->eval_matches) return status;

@@ -117,6 +117,11 @@ vs_status vs_cli_await_interrupts(void (*first)(void *context), void (*second)(v
 
 bool vs_cli_interrupted(void) { return interrupted || ferror(stdout); }
 
+bool vs_cli_go_on(void *unused) {
+  (void)unused;
+  return !vs_cli_interrupted();
+}
+
 void vs_progress_start(vs_progress *progress) {
   *progress =
       (vs_progress){.start_us = vs_clock_monotonic_us(), .start_fraction = -1, .terminal = isatty(STDERR_FILENO)};
