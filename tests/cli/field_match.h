@@ -4,6 +4,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdbool.h>
 #include <time.h>
 
 #include "run_vsss.h"
@@ -13,6 +14,16 @@
 #else
 #define SANITIZED 0
 #endif
+
+// Under it a player may need longer for one answer than `field` waits.
+static inline bool too_slow_for_real_time(void) {
+#ifdef __SANITIZE_THREAD__
+  print_message("note: the thread sanitizer is too slow for a player's 100 ms\n");
+  return true;
+#else
+  return false;
+#endif
+}
 
 static inline int wait_for_text(const char *path, const char *text, int seconds) {
   static char content[65536];
