@@ -1,5 +1,5 @@
 // Collects transitions: many matches, step after step, the present policy and its frozen opponents sampled, rewards
-// summed, episodes' ends sorted into terminated (a goal) and truncated (the clock). Reads no clock; train.c times it.
+// summed, episodes' ends sorted into terminated (a goal) and truncated (the clock). Reads no clock; train_update.c times it.
 #ifndef VSSS_LEARN_ROLLOUT_H
 #define VSSS_LEARN_ROLLOUT_H
 

@@ -1,4 +1,4 @@
-// What train.c, checkpoint.c and train_def.c share.
+// What train.c, train_update.c, imitate.c, checkpoint.c and train_def.c share.
 #ifndef VSSS_LEARN_TRAIN_INTERNAL_H
 #define VSSS_LEARN_TRAIN_INTERNAL_H
 

@@ -20,10 +20,10 @@ vs_value_scale vs_value_scale_make(bool on);
 // A critic's output in reward units.
 float vs_value_in_reward(const vs_value_scale *scale, float value);
 
-// What a batch of `rows` has of values, in place: the first two go in in reward units and come out in the critic's.
+// What a batch has of values.
 typedef struct vs_value_batch {
   int rows;
-  float *target;      // [rows]
+  float *target;      // [rows]: in reward units before, in the critic's unit after
   float *old_value;   // [rows], written: `value` in the critic's unit
   const float *value; // [rows]: what the critic said when it played, in reward units
 } vs_value_batch;

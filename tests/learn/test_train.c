@@ -1,4 +1,4 @@
-// Tests src/learn/train.c on a tiny task that PPO must solve.
+// Tests src/learn/train.c and train_update.c on a tiny task that PPO must solve.
 #include <stdio.h>
 
 #include "assert_near.h"
