@@ -150,6 +150,29 @@ static void a_run_older_than_the_precision_goes_on_in_fp32(void **state) {
   assert_string_equal(def.precision, "fp32");
 }
 
+static void settings_of_a_newer_program_are_refused_with_the_one_that_is(void **state) {
+  (void)state;
+  static const char settings[] = "gamma = 0.9\nwarp = 9\n";
+  static const struct {
+    vs_section section;
+    const char *says;
+  } row[] = {{{"settings", 1, 2}, ":2: unknown key 'warp'"}, {{"settings", 1, 3}, "'settings' is too new (version 3"}};
+  for (size_t i = 0; i < 2; i++) {
+    vs_bytes archive = {0};
+    vs_train_def def;
+    vs_error err = {0};
+    unlink(previous);
+    vs_archive_begin(&archive);
+    add_section(&archive, "contract", vs_contract_hash_hex(), 16);
+    vs_archive_section(&archive, &row[i].section, settings, sizeof settings - 1);
+    assert_int_equal(vs_archive_write(&archive, file, &err), VS_OK);
+    assert_int_not_equal(vs_train_read_def(file, &def, &err), VS_OK);
+    assert_non_null(strstr(err.text, row[i].says));
+    assert_non_null(strstr(err.text, file));
+    if (i == 0) assert_non_null(strstr(err.text, "a setting of a newer vsss: "));
+  }
+}
+
 static void a_section_of_another_version_is_refused_by_name(void **state) {
   (void)state;
   static const vs_section written = {"thing", 3, 4};
@@ -373,6 +396,7 @@ int main(void) {
       cmocka_unit_test(a_damaged_checkpoint_falls_back_to_the_one_before_and_says_so),
       cmocka_unit_test(a_checkpoint_of_other_settings_is_refused),
       cmocka_unit_test(a_run_older_than_the_precision_goes_on_in_fp32),
+      cmocka_unit_test(settings_of_a_newer_program_are_refused_with_the_one_that_is),
       cmocka_unit_test(a_section_of_another_version_is_refused_by_name),
       cmocka_unit_test(a_checkpoint_of_before_versions_continues_bit_for_bit),
       cmocka_unit_test(a_newer_checkpoint_is_refused_by_the_section_that_is),
