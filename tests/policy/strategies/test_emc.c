@@ -58,13 +58,10 @@ static void every_recorded_tick_of_the_original_is_repeated(void **state) {
 }
 
 static vs_world world_of(const vectors *v) {
-  vs_world world = {0};
-  world.ball.x_m = vectors_number(v, BALL);
-  world.ball.y_m = vectors_number(v, BALL + 1);
+  vs_world world = vectors_world(v, BALL, ROBOT, ROBOT_STEP);
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     int c = ROBOT + i * ROBOT_STEP;
     vs_robot *r = &world.robot[VS_OWN][i];
-    r->pose = (vs_pose){vectors_number(v, c), vectors_number(v, c + 1), vectors_number(v, c + 2)};
     r->left_radps = vectors_number(v, c + 3) / VS_WHEEL_RADIUS_M;
     r->right_radps = vectors_number(v, c + 4) / VS_WHEEL_RADIUS_M;
   }

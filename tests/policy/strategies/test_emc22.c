@@ -89,15 +89,12 @@ static vs_event event_of(const vectors *v, double time_s) {
 }
 
 static vs_world world_of(const vectors *v) {
-  vs_world world = {0};
-  world.ball.x_m = vectors_number(v, BALL);
-  world.ball.y_m = vectors_number(v, BALL + 1);
+  vs_world world = vectors_world(v, BALL, ROBOT, ROBOT_STEP);
   world.ball.vx_mps = vectors_number(v, VELOCITY);
   world.ball.vy_mps = vectors_number(v, VELOCITY + 1);
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     int c = ROBOT + i * ROBOT_STEP;
     vs_robot *own = &world.robot[VS_OWN][i], *other = &world.robot[VS_ADVERSARY][i];
-    own->pose = (vs_pose){vectors_number(v, c), vectors_number(v, c + 1), vectors_number(v, c + 2)};
     own->omega_radps = vectors_number(v, c + 3);
     other->pose = (vs_pose){vectors_number(v, OPPONENT + i * 2), vectors_number(v, OPPONENT + i * 2 + 1), 0};
     other->valid = true;

@@ -69,15 +69,8 @@ static void player_sends_thirty_radians_a_second_times_the_recorded_command(void
   assert_ok(vs_player_open("inf:", &player, err));
   while (vectors_next(&v)) {
     if (vectors_number(&v, TICK) == 0) assert_ok(vs_player_reset(player, 1, err));
-    vs_world world = {0};
+    vs_world world = vectors_world(&v, BALL, ROBOT, ROBOT_STEP);
     vs_game game = {0};
-    world.ball.x_m = vectors_number(&v, BALL);
-    world.ball.y_m = vectors_number(&v, BALL + 1);
-    for (int i = 0; i < VS_TEAM_SIZE; i++) {
-      int c = ROBOT + i * ROBOT_STEP;
-      world.robot[VS_OWN][i].pose =
-          (vs_pose){vectors_number(&v, c), vectors_number(&v, c + 1), vectors_number(&v, c + 2)};
-    }
     vs_wheels out[VS_TEAM_SIZE];
     assert_ok(vs_player_step(player, &world, &game, 0.033333, out, err));
     for (int i = 0; i < VS_TEAM_SIZE; i++) {

@@ -8,6 +8,7 @@
 
 #include "assert_near.h"
 #include "vsss/paths.h"
+#include "vsss/world.h"
 
 #define VECTORS_COMMANDS 54000
 #define VECTORS_COLUMNS  48
@@ -43,6 +44,14 @@ static bool vectors_next(vectors *v) {
 }
 
 static double vectors_number(const vectors *v, int column) { return strtod(v->column[column], NULL); }
+
+// Where ball and own robots are in the present row: columns of the ball's x, of the first robot's x, from one to the next.
+static vs_world vectors_world(const vectors *v, int ball, int robot, int step) {
+  vs_world world = {.ball = {.x_m = vectors_number(v, ball), .y_m = vectors_number(v, ball + 1)}};
+  for (int i = 0, c = robot; i < VS_TEAM_SIZE; i++, c += step)
+    world.robot[VS_OWN][i].pose = (vs_pose){vectors_number(v, c), vectors_number(v, c + 1), vectors_number(v, c + 2)};
+  return world;
+}
 
 static void vectors_close(vectors *v) { assert_int_equal(pclose(v->pipe), 0); }
 
