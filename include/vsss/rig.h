@@ -17,9 +17,11 @@ extern "C" {
 
 // What spoils the camera's pictures; all 0: nothing does.
 typedef struct vs_rig_optics {
-  double noise;   // deviation, grey levels
-  double uneven;  // share of the light that the darkest corner lacks, 0..1
-  double blur_px; // deviation of the lens's blur
+  double noise;      // deviation, grey levels
+  double uneven;     // share of the light that the darkest corner lacks, 0..1
+  double blur_px;    // deviation of the lens's blur
+  double lens_k1;    // radial distortion as calib.h has it, -0.4 (barrel) to 0.4; calib.ini carries it
+  double exposure_s; // for so long things move while a picture is taken
 } vs_rig_optics;
 
 typedef struct vs_rig_def {

@@ -11,6 +11,7 @@
 typedef struct options {
   const char *opponent, *team, *folder, *rules, *drive, *truth, *lcm, *own_tags, *their_tags, *config;
   vs_rig_optics optics;
+  double exposure_ms;
   bool white_walls;
   double seconds;
   uint64_t seed;
@@ -53,6 +54,9 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
       {"noise", VS_FLAG_REAL, &o->optics.noise, "GREYS", "of the camera: its deviation in grey levels", 0, 40},
       {"uneven-light", VS_FLAG_REAL, &o->optics.uneven, "SHARE", "of the light that the darkest corner lacks", 0, 0.95},
       {"blur", VS_FLAG_REAL, &o->optics.blur_px, "PX", "deviation of the lens's blur", 0, 3},
+      {"lens", VS_FLAG_REAL, &o->optics.lens_k1, "K1", "radial distortion, below 0 a barrel; calib.ini has it", -0.4,
+       0.4},
+      {"exposure", VS_FLAG_REAL, &o->exposure_ms, "MS", "motion blur: five pictures within it are drawn as one", 0, 33},
       {"robot-delay", VS_FLAG_INT, &o->delay, "FRAMES", "by which the own robots act late, as slow electronics do", 0,
        10},
       {"dir", VS_FLAG_TEXT, &o->folder, "DIR", "where camera, radio and calib.ini are put", 0, 0},
@@ -81,6 +85,7 @@ static vs_status fill(const options *o, const char *folder, vs_rig_def *def, vs_
   def->seed = o->seed;
   def->white_walls = o->white_walls;
   def->optics = o->optics;
+  def->optics.exposure_s = 1e-3 * o->exposure_ms;
   def->delay_frames = o->delay;
   def->width_px = o->width;
   def->height_px = o->height;

@@ -6,7 +6,52 @@
 
 #include "vsss/rng.h"
 
-vs_status vs_optics_open(vs_optics *o, const vs_rig_optics *def, int width, int height, uint64_t seed, vs_error *err) {
+// Distorted to straight, by fixed-point iteration: x_d = x (1 + k1 r^2), as calib.h has it.
+static void undistort(double k1, double xd, double yd, double *x, double *y) {
+  *x = xd, *y = yd;
+  for (int i = 0; i < 20; i++) {
+    double radial = 1 + k1 * (*x * *x + *y * *y);
+    *x = xd / radial, *y = yd / radial;
+  }
+}
+
+// What lies outside the straight picture looks like its edge.
+static uint32_t fixed(double px, int size) { return (uint32_t)lround(256 * fmin(fmax(px - 0.5, 0), size - 1.001)); }
+
+static vs_status grind_lens(vs_optics *o, double focal_px, vs_error *err) {
+  size_t pixels = (size_t)o->width * (size_t)o->height;
+  o->look = malloc(pixels * 2 * sizeof *o->look);
+  o->straight = malloc(pixels * 3);
+  if (!o->look || !o->straight) return vs_fail(err, VS_FAIL, "out of memory");
+  uint32_t *look = o->look;
+  for (int v = 0; v < o->height; v++)
+    for (int u = 0; u < o->width; u++) {
+      double x, y;
+      undistort(o->def.lens_k1, (u + 0.5 - 0.5 * o->width) / focal_px, (v + 0.5 - 0.5 * o->height) / focal_px, &x, &y);
+      *look++ = fixed(0.5 * o->width + focal_px * x, o->width);
+      *look++ = fixed(0.5 * o->height + focal_px * y, o->height);
+    }
+  return VS_OK;
+}
+
+static void through_lens(const vs_optics *o, uint8_t *rgb) {
+  size_t row = 3 * (size_t)o->width, pixels = (size_t)o->width * (size_t)o->height;
+  memcpy(o->straight, rgb, 3 * pixels);
+  const uint32_t *look = o->look;
+  for (size_t i = 0; i < pixels; i++, rgb += 3, look += 2) {
+    uint32_t fx = look[0] & 255, fy = look[1] & 255;
+    const uint8_t *a = o->straight + (look[1] >> 8) * row + 3 * (look[0] >> 8), *b = a + row;
+    for (int k = 0; k < 3; k++)
+      rgb[k] = (uint8_t)(((a[k] * (256 - fx) + a[k + 3] * fx) * (256 - fy) + (b[k] * (256 - fx) + b[k + 3] * fx) * fy +
+                          32768) >>
+                         16);
+  }
+}
+
+vs_status vs_optics_open(vs_optics *o, const vs_rig_optics *def, int width, int height, double focal_px, uint64_t seed,
+                         vs_error *err) {
+  o->look = NULL;
+  o->straight = NULL;
   o->def = *def;
   o->width = width, o->height = height;
   o->row = malloc(3 * (size_t)(width > height ? width : height));
@@ -16,12 +61,16 @@ vs_status vs_optics_open(vs_optics *o, const vs_rig_optics *def, int width, int 
     double value = def->noise * sqrt(-2 * log(1 - vs_rng_uniform(&rng))) * cos(2 * M_PI * vs_rng_uniform(&rng));
     o->noise[i] = (int8_t)lround(fmin(fmax(value, -127), 127));
   }
-  return VS_OK;
+  return def->lens_k1 != 0.0 ? grind_lens(o, focal_px, err) : VS_OK;
 }
 
 void vs_optics_close(vs_optics *o) {
   free(o->row);
+  free(o->look);
+  free(o->straight);
   o->row = NULL;
+  o->look = NULL;
+  o->straight = NULL;
 }
 
 // 1 2 1 along count pixels that lie stride bytes apart.
@@ -59,6 +108,7 @@ static void shade_and_spoil(const vs_optics *o, uint8_t *rgb, uint32_t seq) {
 }
 
 void vs_optics_apply(vs_optics *o, uint8_t *rgb, uint32_t seq) {
+  if (o->look) through_lens(o, rgb);
   if (o->def.blur_px > 0) blur(o, rgb);
   if (o->def.uneven > 0 || o->def.noise > 0) shade_and_spoil(o, rgb, seq);
 }

@@ -84,6 +84,35 @@ static int wait_for_frame(vs_rig *r) {
   return behind > MAX_BEHIND || behind < 0 ? 1 : 1 + behind;
 }
 
+#define MOMENTS 5 // of an exposure: at 1.4 m/s and 10 ms they are 3 mm apart
+
+static void move(vs_world *w, double dt_s) {
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
+    vs_robot *r = &w->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+    r->pose.x_m += dt_s * r->vx_mps;
+    r->pose.y_m += dt_s * r->vy_mps;
+    r->pose.theta_rad += dt_s * r->omega_radps;
+  }
+  w->ball.x_m += dt_s * w->ball.vx_mps;
+  w->ball.y_m += dt_s * w->ball.vy_mps;
+}
+
+// The shutter is open around the moment of the truth.
+static vs_status expose(vs_rig *r, vs_error *err) {
+  if (!r->moment) return vs_render_world(r->render, &r->truth, NULL, r->rgb, err);
+  size_t bytes = 3 * (size_t)r->def.width_px * (size_t)r->def.height_px;
+  memset(r->exposed, 0, bytes * sizeof *r->exposed);
+  for (int k = 0; k < MOMENTS; k++) {
+    vs_world then = r->truth;
+    move(&then, r->def.optics.exposure_s * ((k + 0.5) / MOMENTS - 0.5));
+    vs_status s = vs_render_world(r->render, &then, NULL, r->moment, err);
+    if (s != VS_OK) return s;
+    for (size_t i = 0; i < bytes; i++) r->exposed[i] = (uint16_t)(r->exposed[i] + r->moment[i]);
+  }
+  for (size_t i = 0; i < bytes; i++) r->rgb[i] = (uint8_t)((r->exposed[i] + MOMENTS / 2) / MOMENTS);
+  return VS_OK;
+}
+
 vs_status vs_rig_step(vs_rig *r, vs_rig_step_result *out, vs_error *err) {
   memset(out, 0, sizeof *out);
   int due = wait_for_frame(r);
@@ -113,7 +142,7 @@ vs_status vs_rig_step(vs_rig *r, vs_rig_step_result *out, vs_error *err) {
     out->over = out->playing && vs_env_over(r->env);
     r->next_us += FRAME_US;
   }
-  if (s == VS_OK) s = vs_render_world(r->render, &r->truth, NULL, r->rgb, err);
+  if (s == VS_OK) s = expose(r, err);
   if (s != VS_OK) return s;
   vs_optics_apply(&r->optics, r->rgb, r->truth.seq);
   vs_frame_server_put(r->camera, r->rgb, r->truth.time_us, r->truth.seq);

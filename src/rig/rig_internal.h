@@ -16,6 +16,8 @@ struct vs_rig {
   vs_env *env;
   vs_render *render;
   uint8_t *rgb;
+  uint8_t *moment; // of an exposure, and their sum; NULL: pictures take no time
+  uint16_t *exposed;
   vs_optics optics;
   vs_frame_server *camera;
   vs_robots robots;

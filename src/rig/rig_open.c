@@ -59,7 +59,14 @@ static vs_status open_render(vs_rig *r, vs_error *err) {
   if (s != VS_OK) return s;
   r->rgb = malloc((size_t)def.width_px * (size_t)def.height_px * 3);
   if (!r->rgb) return vs_fail(err, VS_FAIL, "out of memory");
-  return vs_optics_open(&r->optics, &r->def.optics, def.width_px, def.height_px, r->def.seed, err);
+  if (r->def.optics.exposure_s > 0) {
+    size_t bytes = (size_t)def.width_px * (size_t)def.height_px * 3;
+    r->moment = malloc(bytes);
+    r->exposed = malloc(bytes * sizeof *r->exposed);
+    if (!r->moment || !r->exposed) return vs_fail(err, VS_FAIL, "out of memory");
+  }
+  return vs_optics_open(&r->optics, &r->def.optics, def.width_px, def.height_px, vs_render_pinhole(r->render).focal_px,
+                        r->def.seed, err);
 }
 
 // The calibration that a perfect measurement of this camera would give.
@@ -67,6 +74,7 @@ static vs_status write_calib(vs_rig *r, vs_error *err) {
   vs_pinhole p = vs_render_pinhole(r->render);
   vs_calib calib = vs_calib_overhead(p.width_px, p.height_px, p.height_m, 2.0 * atan(0.5 * p.height_px / p.focal_px));
   snprintf(calib.camera, sizeof calib.camera, "rig");
+  calib.k1 = r->def.optics.lens_k1;
   vs_status s = vs_calib_create(r->calib_path, &calib, err);
   if (s == VS_OK) vs_venue_mine(r->calib_path, &r->calib_file);
   return s;
@@ -129,5 +137,7 @@ void vs_rig_free(vs_rig *r) {
   vs_env_free(r->env);
   vs_optics_close(&r->optics);
   free(r->rgb);
+  free(r->moment);
+  free(r->exposed);
   free(r);
 }

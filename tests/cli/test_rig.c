@@ -44,9 +44,8 @@ static pid_t start_rig(const char *flags) {
   return 0;
 }
 
-static void the_camera_shows_the_kick_off_where_the_calibration_says(void **state) {
-  (void)state;
-  pid_t rig = start_rig("--team yellow --opponent zero:");
+static void see_the_kick_off(const char *flags) {
+  pid_t rig = start_rig(flags);
   if (!rig) return;
   char source[96], calib_path[96];
   snprintf(source, sizeof source, "rig:%s/camera", venue);
@@ -75,12 +74,22 @@ static void the_camera_shows_the_kick_off_where_the_calibration_says(void **stat
   assert_near(y, 0, 0.002);
   for (int i = 0; i < 3; i++) { // yellow defends +x
     assert_true(vs_calib_to_field(&calib, seen.tag[i].centre_px[0], seen.tag[i].centre_px[1], 0.08, &x, &y));
-    assert_true(x > 0);
+    assert_true(x > 0 && x < 0.75 && fabs(y) < 0.65);
   }
   vs_detector_free(detector);
   vs_camera_close(camera);
   kill(rig, SIGINT);
   assert_int_equal(vsss_wait(rig, 20), 0);
+}
+
+static void the_camera_shows_the_kick_off_where_the_calibration_says(void **state) {
+  (void)state;
+  see_the_kick_off("--team yellow --opponent zero:");
+}
+
+static void so_does_one_with_a_distorting_lens_and_a_slow_shutter(void **state) {
+  (void)state;
+  see_the_kick_off("--team yellow --opponent zero: --lens -0.25 --exposure 8");
 }
 
 static void the_robots_obey_the_radio_and_report(void **state) {
@@ -302,6 +311,7 @@ int main(void) {
       cmocka_unit_test(bad_input_is_named_in_one_line),
       cmocka_unit_test(a_folder_that_cannot_be_made_is_named),
       cmocka_unit_test(the_camera_shows_the_kick_off_where_the_calibration_says),
+      cmocka_unit_test(so_does_one_with_a_distorting_lens_and_a_slow_shutter),
       cmocka_unit_test(the_robots_obey_the_radio_and_report),
       cmocka_unit_test(files_that_no_rig_left_are_kept_and_named),
       cmocka_unit_test(planted_links_are_refused_and_what_they_point_at_is_kept),
