@@ -1,7 +1,7 @@
 # ./vsss, the modules, the models and the C library with its stable headers, readable by everybody. PREFIX, LIBDIR (a folder
 # below PREFIX) and DESTDIR as usual.
 STABLE_HEADERS := $(shell grep -l '^// Stable' include/vsss/*.h)
-SHARED := models lcm_types deploy/config deploy/calibration deploy/firmware deploy/examples deploy/docs
+SHARED := models lcm_types deploy/config deploy/calibration deploy/firmware deploy/systemd deploy/examples deploy/docs
 D_BIN := $(DESTDIR)$(PREFIX)/bin
 D_LIB := $(DESTDIR)$(LIBDIR)
 D_INCLUDE := $(DESTDIR)$(PREFIX)/include/vsss

@@ -2,6 +2,7 @@
 #include "cli/field_venue.h"
 #include "test_folder.h"
 #include "vsss/calib.h"
+#include "vsss/paths.h"
 
 // What doctor says while the venue lives, and its status.
 static const char *examine(venue *v, const char *flags, int *status) {
@@ -87,11 +88,56 @@ static void a_wrong_configuration_and_policy_are_named(void **state) {
   assert_says(run.out, "expected 32 hexadecimal digits");
 }
 
+// The venues that come with the program are read without a complaint.
+static void the_example_venues_are_right(void **state) {
+  (void)state;
+  static const char *const names[] = {"field.ini", "venue-larc2026.ini", "venue-plates.ini"};
+  static vsss_run run;
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    char relative[64], path[512], arguments[600], said[600];
+    snprintf(relative, sizeof relative, "deploy/config/%s", names[i]);
+    assert_ok(vs_path_find(relative, path, sizeof path, err));
+    snprintf(arguments, sizeof arguments, "doctor --config '%s'", path);
+    snprintf(said, sizeof said, "ok    config       %s", path);
+    vsss(&run, arguments);
+    assert_says(run.out, said);
+  }
+}
+
+// What the units start is a command with flags that it has: its help is asked for with them.
+static void the_systemd_units_start_what_there_is(void **state) {
+  (void)state;
+  static const char *const names[] = {"field", "bridge"};
+  static vsss_run run;
+  for (int i = 0; i < 2; i++) {
+    char relative[64], path[512], arguments[2000], usage[32];
+    snprintf(relative, sizeof relative, "deploy/systemd/vsss-%s.service", names[i]);
+    assert_ok(vs_path_find(relative, path, sizeof path, err));
+    const char *start = strstr(read_text(path), "exec vsss ");
+    assert_non_null(start);
+    start += strlen("exec vsss ");
+    size_t length = strcspn(start, "'\n"), used = 0;
+    for (size_t k = 0; k < length && used + 16 < sizeof arguments; k++) { // $$ and %% stand for one of them
+      arguments[used++] = start[k];
+      if ((start[k] == '$' || start[k] == '%') && start[k + 1] == start[k]) k++;
+    }
+    snprintf(arguments + used, sizeof arguments - used, " --help");
+    setenv("VSSS_CAMERA", "/dev/video0", 1);
+    setenv("VSSS_RADIO", "/dev/ttyUSB0", 1);
+    setenv("VSSS_TEAM", "blue", 1);
+    vsss(&run, arguments);
+    snprintf(usage, sizeof usage, "usage: vsss %s", names[i]);
+    if (run.status != 0 || !strstr(run.out, usage)) fail_msg("vsss %s: %d %s", arguments, run.status, run.err);
+  }
+}
+
 int main(void) {
   vs_camera_register(vs_frame_stream_camera());
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(what_is_there_is_ok_and_what_is_not_gets_a_fix),
       cmocka_unit_test(a_wrong_configuration_and_policy_are_named),
+      cmocka_unit_test(the_example_venues_are_right),
+      cmocka_unit_test(the_systemd_units_start_what_there_is),
   };
   return cmocka_run_group_tests_name("cli/doctor", tests, make_folder, remove_folder);
 }
