@@ -15,10 +15,10 @@
 #define SANITIZED 0
 #endif
 
-// Under it a player may need longer for one answer than `field` waits.
+// Under it a player may need longer for one answer than `field` waits, and delays are longer than they are.
 static inline bool too_slow_for_real_time(void) {
 #ifdef __SANITIZE_THREAD__
-  print_message("note: the thread sanitizer is too slow for a player's 100 ms\n");
+  print_message("note: the thread sanitizer is too slow for real time\n");
   return true;
 #else
   return false;

@@ -65,7 +65,8 @@ static void plugins_that_do_not_fit_are_refused(void **state) {
 
 static void unknown_players_and_options_are_usage_errors(void **state) {
   (void)state;
-  assert_refused("sim --blue ecm:", 2, "'ecm:' is no player; known: onnx: emc: inf: emc22: random: zero: plugin:");
+  assert_refused("sim --blue ecm:", 2,
+                 "'ecm:' is no player; known: onnx: emc: inf: emc22: random: zero: shake: plugin:");
   assert_refused("sim --blue 'emc:?pdi=1'", 2, "emc: has no option 'pdi=1'; it knows: pid");
   assert_refused("sim --yellow inf:x", 2, "inf:x: nothing but ?options may follow 'inf:'");
 }

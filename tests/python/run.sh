@@ -34,7 +34,8 @@ for test in tests/python/test_*.py; do
   [ -z "$only" ] || [ "$name" = "$only" ] || [ "$name" = "test_$only" ] || continue
   log=$folder/tests/python_$name.log
   start=$(date +%s.%N)
-  if (cd tests/python && "$python" -W error::DeprecationWarning:vsss -m unittest -v "$name") >"$log" 2>&1; then
+  # A run in the background ignores interrupts, which tests send to what they start.
+  if (cd tests/python && env --default-signal=INT "$python" -W error::DeprecationWarning:vsss -m unittest -v "$name") >"$log" 2>&1; then
     printf 'ok    python/%-33s %3d cases %6.1f s\n' "${name#test_}" "$(grep -c '\.\.\. ok' "$log")" \
       "$(echo "$(date +%s.%N) $start" | awk '{print $1 - $2}')"
     sed -n "s/^.*\.\.\. skipped '\(.*\)'$/skipped python\/${name#test_}: \1/p" "$log"
