@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <time.h>
 
+#include "assert_near.h"
 #include "run_vsss.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
