@@ -30,6 +30,14 @@ VSSS_API vs_status vs_control_reset(vs_control *control, uint64_t seed, bool shu
 // After the referee placed the robots: history and last action start anew, the next call decides, the player goes on.
 VSSS_API void vs_control_restart(vs_control *control);
 
+// How long after the moment that a world shows a command given on it reaches the wheels (camera, decision and radio
+// together; measure it). Before anything is shown to the player, the world is moved on by so much: own robots by the
+// commands that are on their way, the other objects as they go. So a player that knows no delay plays as if there were
+// none, but for what the prediction cannot know. 0 at first; kept by reset and restart. VS_USAGE: not in
+// [0, VS_CONTROL_LATENCY_MAX_S].
+#define VS_CONTROL_LATENCY_MAX_S 0.3
+VSSS_API vs_status vs_control_set_latency(vs_control *control, double latency_s, vs_error *err);
+
 // Called for every camera frame with the measured absolute world and game, dt_s since the last call. Lets the player
 // decide when its rate says so (the first call decides, lost frames are skipped, never made up for) and writes the
 // wheels to apply until the next call; where it fails, zeros. decided (may be NULL) tells whether this frame was a
@@ -41,6 +49,10 @@ VSSS_API vs_status vs_control_step(vs_control *control, vs_team team, const vs_w
 // not finite is VS_FAIL and changes nothing.
 VSSS_API void vs_control_observe(vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game);
 VSSS_API vs_status vs_control_set_action(vs_control *control, const float *action /* [3][2] */, vs_error *err);
+
+// The observer as it would be after observing this world; the control is not changed.
+VSSS_API void vs_control_peek(const vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game,
+                              vs_observer *out);
 
 VSSS_API const vs_observer *vs_control_observer(const vs_control *control);
 VSSS_API const float *vs_control_action(const vs_control *control); // the last, [3][2] in [-1, 1]

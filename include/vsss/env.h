@@ -25,11 +25,17 @@ typedef struct vs_episode_def {
   bool either_kicks_off;                // kick-offs by a team drawn at random
 } vs_episode_def;
 
+// Whose control knows the episode's latency and predicts the world to the moment its commands act
+// (vs_control_set_latency): the software around a learned policy does, a scripted player is what its text says.
+typedef enum vs_predicts { VS_PREDICTS_LEARNED = 0, VS_PREDICTS_NONE, VS_PREDICTS_ALL } vs_predicts;
+VSSS_API vs_status vs_predicts_parse(const char *text, vs_predicts *out, vs_error *err); // learned, none, all
+
 typedef struct vs_env_def {
   const vs_model *model;        // shared, outlives the env
   const char *player[VS_TEAMS]; // URI, or NULL: an external team whose actions the caller gives
   vs_referee_def referee;
   vs_realism realism;
+  vs_predicts predicts;     // external teams count as learned
   bool shuffle_adversaries; // training
   vs_episode_def episode;   // training
 } vs_env_def;

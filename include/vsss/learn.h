@@ -22,6 +22,7 @@ typedef struct vs_train_def {
   char placement[16]; // random or paper
   double episode_s;
   double still_distance_m;                           // a ball that stays within it lies still; 0.02 by the rules
+  char predicts[16];                                 // who sees the world moved on by the delay (vsss/env.h)
   double still_low_s, still_high_s;                  // how long the ball may lie still, drawn for each episode
   double start_open, start_penalty, start_free_ball; // shares of episodes that begin so; the rest kick off
   int envs, steps;                                   // matches side by side; decisions of each per update
@@ -43,6 +44,9 @@ typedef struct vs_train_def {
   double learning_rate, learning_rate_end; // linear over transitions_m
   double adam_epsilon, max_gradient_norm;
   int epochs, minibatch, microbatches;
+  // The networks see another of an observation's 24 symmetric versions (vsss/observe.h), drawn anew after so many decisions
+  // for each robot; 0: always the observation itself.
+  int augment;
   bool canonical; // the networks see one of the 24 symmetric versions of an observation (vsss/observe.h)
   // ONNX files: the mean over all 24 versions in place of one answer, and another gain (0: action_gain). An average is
   // smaller than what it is the average of.

@@ -37,7 +37,7 @@ enum { CAPI_SETTINGS_MAX = 40 };
 typedef struct capi_settings {
   int envs, threads;
   uint64_t seed;
-  char drive[32], rules[32], placement[32], realism[4096], reward[512], blue[512], yellow[512];
+  char drive[32], rules[32], placement[32], predicts[16], realism[4096], reward[512], blue[512], yellow[512];
   double episode_s, still_low_s, still_high_s, start_open, start_penalty, start_free_ball;
   int goal_difference_stop, halves;
   bool end_at_first_goal, either_kicks_off, shuffle_adversaries, stay_over;

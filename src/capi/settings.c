@@ -21,6 +21,7 @@ static void schema_of(capi_settings *d, vs_config_key keys[CAPI_SETTINGS_MAX]) {
       TEXT(placement, "restarts: random (legal poses) or paper"),
       REAL(episode_s, 0, 3600, "an episode ends here; 0: 40 s, or a match's length where goals do not end it"),
       TEXT(realism, "INI file of sensors and dynamics, drawn anew each episode; empty: the paper's noise"),
+      TEXT(predicts, "who sees the world moved on by the delay: learned (and whoever calls), none or all"),
       TEXT(reward, "paper, dense or goals, then term=weight"),
       TEXT(blue, "URI of blue's player, such as emc:; empty: whoever calls"),
       TEXT(yellow, "... of yellow's"),
@@ -80,6 +81,7 @@ vs_status vs_capi_settings_read(const char *const *texts, capi_settings *out, vs
                          .drive = "planar",
                          .rules = "paper",
                          .placement = "random",
+                         .predicts = "learned",
                          .reward = "dense",
                          .goal_difference_stop = 10,
                          .halves = 1,
@@ -124,6 +126,7 @@ vs_status vs_capi_settings_open(const capi_settings *s, vs_vecenv_def *def, vs_m
   vs_env_def env = vs_env_def_default(NULL);
   status = vs_reward_mix_parse(s->reward, weights, err);
   if (status == VS_OK) status = read_rules(s, &env.referee, err);
+  if (status == VS_OK) status = vs_predicts_parse(s->predicts, &env.predicts, err);
   char kept[sizeof s->realism];
   if (status == VS_OK) status = vs_capi_realism(s->realism, kept, sizeof kept, &env.realism, err);
   if (status != VS_OK) return status;

@@ -9,6 +9,7 @@ vs_match_flags vs_match_flags_default(void) {
   return (vs_match_flags){.drive = "contact",
                           .rules = "paper",
                           .placement = "paper",
+                          .predicts = "learned",
                           .seed = 1,
                           .threads = processors > 0 ? (int)processors : 1};
 }
@@ -18,9 +19,11 @@ vs_status vs_match_flags_open(vs_match_flags *flags, vs_model **model, vs_env_de
   vs_rules rules;
   vs_placement_mode placement;
   vs_realism realism = vs_realism_default();
+  vs_predicts predicts;
   vs_status s = vs_drive_parse(flags->drive, &drive, err);
   if (s == VS_OK) s = vs_rules_parse(flags->rules, &rules, err);
   if (s == VS_OK) s = vs_placement_parse(flags->placement, &placement, err);
+  if (s == VS_OK) s = vs_predicts_parse(flags->predicts, &predicts, err);
   if (s == VS_OK && flags->realism) s = vs_realism_load(flags->realism, &realism, err);
   if (s != VS_OK) return s;
 
@@ -33,6 +36,7 @@ vs_status vs_match_flags_open(vs_match_flags *flags, vs_model **model, vs_env_de
   if (flags->seconds > 0) env->referee.duration_s = flags->seconds;
   flags->seconds = env->referee.duration_s;
   env->realism = realism;
+  env->predicts = predicts;
   return VS_OK;
 }
 

@@ -6,7 +6,7 @@
 #include "vsss/env.h"
 
 typedef struct vs_match_flags {
-  const char *drive, *rules, *placement, *realism;
+  const char *drive, *rules, *placement, *realism, *predicts;
   double seconds;
   uint64_t seed;
   int threads;
@@ -23,7 +23,9 @@ vs_match_flags_default(void); // contact drive, paper rules and their length, se
       {"drive", VS_FLAG_TEXT, &(m).drive, "NAME", "contact (the reference) or planar (the fast twin)", 0, 0},            \
       {"rules", VS_FLAG_TEXT, &(m).rules, "NAME", "paper, league (the network referee's), serie-a-2023 or larc-2026", 0, \
        0},                                                                                                               \
-      {"placement", VS_FLAG_TEXT, &(m).placement, "NAME", "of restarts: paper or random", 0, 0}, {                       \
+      {"placement", VS_FLAG_TEXT, &(m).placement, "NAME", "of restarts: paper or random", 0, 0},                         \
+      {"predicts", VS_FLAG_TEXT, &(m).predicts, "WHO",                                                                   \
+       "sees the world moved on by --realism's latency: learned players, none or all", 0, 0}, {                       \
     "realism", VS_FLAG_TEXT, &(m).realism, "FILE", "sensor and actuator model (INI); default: the paper's noise", 0, 0   \
   }
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "predict.h"
 #include "vsss/check.h"
 #include "vsss/geom.h"
 #include "vsss/rng.h"
@@ -23,6 +24,8 @@ typedef struct state {
   bool played;             // it has been called since the reset
   float action[VS_TEAM_SIZE * VS_ACTION_SIZE];
   vs_wheels wheels[VS_TEAM_SIZE];
+  double latency_s;
+  vs_predictor predictor; // of what comes of it; idle without latency
 } state;
 
 struct vs_control {
@@ -86,14 +89,43 @@ void vs_control_restart(vs_control *control) {
   now->decide.fresh = now->observe.fresh = true;
   memset(now->action, 0, sizeof now->action);
   memset(now->wheels, 0, sizeof now->wheels);
+  memset(&now->predictor, 0, sizeof now->predictor);
+}
+
+vs_status vs_control_set_latency(vs_control *control, double latency_s, vs_error *err) {
+  if (!(latency_s >= 0 && latency_s <= VS_CONTROL_LATENCY_MAX_S))
+    return vs_fail(err, VS_USAGE, "latency %g s: expected 0 to %g", latency_s, VS_CONTROL_LATENCY_MAX_S);
+  control->now.latency_s = latency_s;
+  return VS_OK;
+}
+
+// What the player is shown: the team's view of the world at the moment when its command will act.
+static void show(state *now, vs_team team, const vs_world *absolute, const vs_game *game, vs_world *view,
+                 vs_game *game_view) {
+  vs_world ahead = *absolute;
+  if (now->latency_s > 0) {
+    vs_predictor_see(&now->predictor, team, now->latency_s, absolute);
+    vs_predictor_ahead(&now->predictor, team, now->latency_s, &ahead);
+  }
+  vs_world_for_team(&ahead, team, view);
+  vs_game_for_team(game, team, game_view);
 }
 
 void vs_control_observe(vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game) {
   vs_world view;
   vs_game game_view;
-  vs_world_for_team(absolute, team, &view);
-  vs_game_for_team(game, team, &game_view);
+  show(&control->now, team, absolute, game, &view, &game_view);
   vs_observer_push(&control->now.observer, &view, &game_view, control->now.action);
+}
+
+void vs_control_peek(const vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game,
+                     vs_observer *out) {
+  state now = control->now;
+  vs_world view;
+  vs_game game_view;
+  show(&now, team, absolute, game, &view, &game_view);
+  vs_observer_push(&now.observer, &view, &game_view, now.action);
+  *out = now.observer;
 }
 
 // A scripted team at its own rate. It is observed at the policy's rate all the same, so that it can be imitated.
@@ -105,8 +137,7 @@ static vs_status step_scripted(vs_control *control, vs_team team, const vs_world
   if (!*decided) return VS_OK;
   vs_world view;
   vs_game game_view;
-  vs_world_for_team(absolute, team, &view);
-  vs_game_for_team(game, team, &game_view);
+  show(now, team, absolute, game, &view, &game_view);
   double since_s = now->played ? now->since_decision_s : now->decide.period_s;
   vs_status status = vs_player_step(control->player, &view, &game_view, since_s, now->wheels, err);
   if (status != VS_OK) return status;
@@ -131,6 +162,7 @@ vs_status vs_control_step(vs_control *control, vs_team team, const vs_world *abs
   bool due = false;
   vs_status status = VS_OK;
   now->since_decision_s += dt_s;
+  if (now->latency_s > 0) vs_predictor_see(&now->predictor, team, now->latency_s, absolute);
   if (control->player && vs_player_kind(control->player) == VS_SEES_WORLD)
     status = step_scripted(control, team, absolute, game, dt_s, &due, err);
   else if (control->player)
@@ -140,6 +172,7 @@ vs_status vs_control_step(vs_control *control, vs_team team, const vs_world *abs
     now->since_decision_s = 0;
   }
   if (status != VS_OK) memset(now->wheels, 0, sizeof now->wheels);
+  if (now->latency_s > 0) vs_predictor_command(&now->predictor, absolute->time_us, now->wheels);
   memcpy(out, now->wheels, sizeof now->wheels);
   if (decided) *decided = due;
   return status;
@@ -174,6 +207,17 @@ static bool metronome_ok(const metronome *m, const metronome *mine) {
   return m->period_s == mine->period_s && vs_all_finite(&m->since_s, 1) && vs_are_bools(&m->fresh, 1);
 }
 
+static bool predictor_ok(const vs_predictor *p) {
+  bool ok = p->commands.count >= 0 && p->commands.count <= VS_COMMANDS_KEPT && vs_are_bools(&p->started, 1) &&
+            vs_all_finite(&p->commands.wheels[0][0].left_radps, sizeof p->commands.wheels / sizeof(double)) &&
+            vs_all_finite(&p->now.ball.x_m, 6) && vs_are_bools(&p->now.ball.valid, 1);
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
+    const vs_robot *r = &p->now.robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+    ok = ok && vs_all_finite(&r->pose.x_m, 8) && vs_are_bools(&r->valid, 1);
+  }
+  return ok;
+}
+
 // mine: of the same player.
 static bool state_ok(const state *s, const state *mine) {
   const vs_observer *o = &s->observer;
@@ -183,7 +227,8 @@ static bool state_ok(const state *s, const state *mine) {
          metronome_ok(&s->decide, &mine->decide) && metronome_ok(&s->observe, &mine->observe) &&
          vs_all_finite(&s->since_decision_s, 1) && vs_are_bools(&s->played, 1) &&
          vs_all_finite_floats(s->action, VS_TEAM_SIZE * VS_ACTION_SIZE) &&
-         vs_all_finite(&s->wheels[0].left_radps, 2 * VS_TEAM_SIZE);
+         vs_all_finite(&s->wheels[0].left_radps, 2 * VS_TEAM_SIZE) && s->latency_s >= 0 &&
+         s->latency_s <= VS_CONTROL_LATENCY_MAX_S && predictor_ok(&s->predictor);
 }
 
 vs_status vs_control_restore(vs_control *control, const void *in, vs_error *err) {

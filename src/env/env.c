@@ -36,6 +36,16 @@ struct vs_env {
   match m;
 };
 
+vs_status vs_predicts_parse(const char *text, vs_predicts *out, vs_error *err) {
+  static const char *const names[] = {"learned", "none", "all"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (!strcmp(text, names[i])) {
+      *out = (vs_predicts)i;
+      return VS_OK;
+    }
+  return vs_fail(err, VS_USAGE, "predicts = %s: expected learned, none or all", text);
+}
+
 vs_env_def vs_env_def_default(const vs_model *model) {
   vs_env_def def = {.model = model,
                     .referee = vs_referee_def_default(VS_RULES_PAPER),
@@ -132,6 +142,12 @@ static vs_event draw_episode(const vs_episode_def *def, uint64_t seed, vs_refere
   return start;
 }
 
+static bool predicts(const vs_env *env, int team) {
+  const vs_player *player = vs_control_player(env->control[team]);
+  bool learned = !player || vs_player_kind(player) == VS_SEES_OBSERVATION;
+  return env->def.predicts == VS_PREDICTS_ALL || (env->def.predicts == VS_PREDICTS_LEARNED && learned);
+}
+
 vs_status vs_env_reset(vs_env *env, uint64_t seed, vs_error *err) {
   match *m = &env->m;
   for (int t = 0; t < VS_TEAMS; t++) {
@@ -152,6 +168,9 @@ vs_status vs_env_reset(vs_env *env, uint64_t seed, vs_error *err) {
                          err);
   if (s != VS_OK) return fail_in_match(m, err);
   vs_sensors_reset(&m->sensors, &env->def.realism, vs_seed_mix(seed, SEED_SENSORS));
+  for (int t = 0; t < VS_TEAMS && s == VS_OK; t++)
+    s = vs_control_set_latency(env->control[t], predicts(env, t) ? m->sensors.latency_s : 0.0, err);
+  if (s != VS_OK) return fail_in_match(m, err);
   vs_sim_reset(env->sim, &m->sensors.params);
   vs_sim_world(env->sim, &m->truth);
   if (start.kind == VS_EVENT_NONE) {
@@ -255,12 +274,8 @@ void vs_env_observation(const vs_env *env, vs_team team, float *out) {
     return;
   }
   // A player's control observes the present frame only when it is next stepped: show what it is about to see.
-  vs_observer ahead = *vs_control_observer(control);
-  vs_world view;
-  vs_game game;
-  vs_world_for_team(&m->measured, team, &view);
-  vs_game_for_team(&m->referee.game, team, &game);
-  vs_observer_push(&ahead, &view, &game, vs_control_action(control));
+  vs_observer ahead;
+  vs_control_peek(control, team, &m->measured, &m->referee.game, &ahead);
   vs_observer_write(&ahead, out);
 }
 

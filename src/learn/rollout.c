@@ -165,14 +165,21 @@ void vs_rollout_free(vs_rollout *r) {
   *r = (vs_rollout){0};
 }
 
+// The version that row `row` of all is shown for the time being. Rows change theirs at different decisions.
+static int drawn_version(const vs_rollout *r, int row) {
+  uint64_t period = ((uint64_t)r->decision + (uint64_t)row) / (uint64_t)r->def.io.augment;
+  vs_rng rng = vs_rng_make(vs_seed_mix(r->def.seed ^ UINT64_C(0x53594d4d), period), (uint64_t)row);
+  return (int)vs_rng_below(&rng, VS_SYMMETRIES);
+}
+
 // What the network sees of row `row` of all (observations float[rows][VS_OBS_SIZE]); whether it is a mirror image.
 static bool show(const vs_rollout *r, const float *observations, int row, float *x) {
   const float *observation = observations + (size_t)row * VS_OBS_SIZE;
-  if (!r->def.io.canonical) {
+  if (!r->def.io.canonical && !r->def.io.augment) {
     memcpy(x, observation, VS_OBS_SIZE * sizeof *x);
     return false;
   }
-  int version = vs_symmetry_canonical(observation);
+  int version = r->def.io.canonical ? vs_symmetry_canonical(observation) : drawn_version(r, row);
   vs_symmetry_apply(&r->symmetry, version, observation, x);
   return vs_symmetry_mirrored(version);
 }

@@ -13,7 +13,7 @@
 #include "train_matches.h"
 
 static vs_policy_io training_io(const vs_train_def *def) {
-  return (vs_policy_io){.canonical = def->canonical, .action_gain = def->action_gain};
+  return (vs_policy_io){.canonical = def->canonical, .augment = def->augment, .action_gain = def->action_gain};
 }
 
 static vs_policy_io export_io(const vs_train_def *def) {

@@ -20,6 +20,7 @@ vs_train_def vs_train_def_default(void) {
   return (vs_train_def){
       .drive = "planar",
       .placement = "random",
+      .predicts = "learned",
       .episode_s = 40.0,
       .still_distance_m = VS_STILL_DISTANCE_M,
       .still_low_s = VS_STILL_S,
@@ -69,6 +70,7 @@ static void without_levers(vs_train_def *def) {
   def->still_distance_m = VS_STILL_DISTANCE_M;
   def->still_low_s = def->still_high_s = VS_STILL_S;
   def->start_open = def->start_penalty = def->start_free_ball = 0.0;
+  def->augment = 0;
   def->canonical = false;
   def->action_gain = 1.0;
   def->export_average = false;
@@ -119,6 +121,7 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
   const vs_config_key rows[] = {
       TEXT(drive, "planar (fast) or contact (the reference)"),
       TEXT(realism, "INI file of sensors and dynamics, drawn anew each episode"),
+      TEXT(predicts, "who sees the world moved on by the delay: learned, none or all"),
       TEXT(placement, "restarts: random (legal poses) or paper"),
       REAL(episode_s, 1, 600, "an episode ends here, or at the first goal"),
       REAL(still_distance_m, 0.001, 1, "a ball that stays within this distance lies still (a jam, a duel at the wall)"),
@@ -154,6 +157,7 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       WHOLE(epochs, 1, 100, "passes over a batch"),
       WHOLE(minibatch, 16, 10000000, "rows of one gradient"),
       WHOLE(microbatches, 1, 64, "parts a minibatch is computed in (results depend on it, not on threads)"),
+      WHOLE(augment, 0, 1000000, "decisions until a robot's networks see another symmetric version, at random; 0: never"),
       SWITCH(canonical, "networks see the canonical one of an observation's mirror images and numberings"),
       REAL(action_gain, 1, 4, "the policy's output times this, clipped, is the wheel command"),
       SWITCH(export_average, "policy files ask the network about all 24 symmetric versions and take the mean"),
@@ -255,6 +259,8 @@ vs_status vs_train_def_check(const vs_train_def *def, vs_error *err) {
   vs_reward_weights weights;
   vs_status s = vs_drive_parse(def->drive, &drive, err);
   if (s == VS_OK) s = vs_placement_parse(def->placement, &placement, err);
+  vs_predicts predicts;
+  if (s == VS_OK) s = vs_predicts_parse(def->predicts, &predicts, err);
   if (s == VS_OK) s = vs_train_hidden(def, &shape, err);
   if (s == VS_OK) s = vs_league_parse(def->opponent, &league, err);
   if (s == VS_OK) s = vs_reward_mix_parse(def->reward, &weights, err);
@@ -267,6 +273,8 @@ vs_status vs_train_def_check(const vs_train_def *def, vs_error *err) {
   if (s != VS_OK) return s;
   if (precision == VS_PRECISION_BF16 && !strcmp(def->learner, "torch"))
     return vs_fail(err, VS_USAGE, "precision = bf16: is for learner = own; torch computes in fp32");
+  if (def->canonical && def->augment)
+    return vs_fail(err, VS_USAGE, "canonical and augment exclude each other: set canonical = false or augment = 0");
   if (def->canonical && def->export_average)
     return vs_fail(err, VS_USAGE, "canonical and export_average exclude each other: set one of them to false");
   if (def->still_high_s < def->still_low_s)

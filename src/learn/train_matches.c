@@ -60,6 +60,7 @@ static vs_status open_vecenv(sim_matches *m, const vs_train_def *def, int rank, 
                                      .still_high_s = def->still_high_s,
                                      .either_kicks_off = true};
   s = vs_placement_parse(def->placement, &vec.env.referee.placement, err);
+  if (s == VS_OK) s = vs_predicts_parse(def->predicts, &vec.env.predicts, err);
   if (s == VS_OK && def->realism[0]) s = load_realism(def->realism, &vec.env.realism, err);
   return s == VS_OK ? vs_vecenv_new(&vec, &m->vec, err) : s;
 }
