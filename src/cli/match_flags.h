@@ -24,8 +24,14 @@ vs_match_flags_default(void); // contact drive, paper rules and their length, se
       {"rules", VS_FLAG_TEXT, &(m).rules, "NAME", "paper, league (the network referee's), serie-a-2023 or larc-2026", 0, \
        0},                                                                                                               \
       {"placement", VS_FLAG_TEXT, &(m).placement, "NAME", "of restarts: paper or random", 0, 0},                         \
-      {"predicts", VS_FLAG_TEXT, &(m).predicts, "WHO",                                                                   \
-       "sees the world moved on by --realism's latency: learned players, none or all", 0, 0}, {                       \
+      {"predicts",                                                                                                       \
+       VS_FLAG_TEXT,                                                                                                     \
+       &(m).predicts,                                                                                                    \
+       "WHO",                                                                                                            \
+       "sees the world moved on by --realism's latency: learned players, none or all",                                   \
+       0,                                                                                                                \
+       0},                                                                                                               \
+  {                                                                                                                      \
     "realism", VS_FLAG_TEXT, &(m).realism, "FILE", "sensor and actuator model (INI); default: the paper's noise", 0, 0   \
   }
 

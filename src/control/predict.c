@@ -6,7 +6,7 @@
 #include "vsss/field.h"
 #include "vsss/geom.h"
 
-#define STEP_S                  (1.0 / 120)
+#define STEP_S                 (1.0 / 120)
 #define HALF_ROBOT_M           (VS_ROBOT_SIZE_M / 2)
 #define BALL_DECELERATION_MPS2 0.20 // rolling (models/vsss_contact.xml)
 #define REBOUND                0.6  // of the ball's speed into a wall is left

@@ -57,7 +57,7 @@ static vs_control *control_of(const char *uri) {
 }
 
 static notes notes_of(const vs_control *control) {
-  char state[sizeof(vs_observer) + 1024];
+  char state[sizeof(vs_observer) + 8192];
   notes n;
   size_t size = vs_control_state_size(control);
   assert_true(size >= sizeof n && size <= sizeof state);
