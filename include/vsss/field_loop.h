@@ -45,6 +45,7 @@ typedef struct vs_field_def {
   vs_radio_key key;               // of our team on the air
   const vs_wire *wire;            // what the robots speak; NULL: our own protocol
   double camera_height_m;
+  double latency_s;   // mid-exposure to wheel: players are shown the world moved on by it (vs_control_set_latency); 0
   double ball_hold_s; // a ball never seen, or not for longer, stops the robots; 0: they play on with its last place
   vs_camera_def camera_def;
   vs_detector_def detector;

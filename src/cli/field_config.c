@@ -6,11 +6,12 @@
 
 #include "cli.h"
 #include "vsss/config.h"
+#include "vsss/control.h"
 #include "vsss/frame_stream.h"
 #include "vsss/paths.h"
 #include "vsss/vision_config.h"
 
-enum { ROWS = 120, OWN_ROWS = 16 };
+enum { ROWS = 120, OWN_ROWS = 17 };
 
 // text NULL: what the file at path holds.
 static vs_status load(const char *path, const char *text, vs_field_config *c, vs_error *err) {
@@ -22,6 +23,7 @@ static vs_status load(const char *path, const char *text, vs_field_config *c, vs
       {"field.attack", VS_CONFIG_TEXT, c->attack, sizeof c->attack, 0, 0, "+x or -x; empty: blue +x, yellow -x"},
       {"field.duration_s", VS_CONFIG_REAL, &d->duration_s, 0, 1, 86400, "of a match, until a referee says otherwise"},
       {"field.camera_height_m", VS_CONFIG_REAL, &d->camera_height_m, 0, 1, 5, "where there is no calibration"},
+      {"field.latency_s", VS_CONFIG_REAL, &d->latency_s, 0, 0, VS_CONTROL_LATENCY_MAX_S, "mid-exposure to wheel"},
       {"field.ball_hold_s", VS_CONFIG_REAL, &d->ball_hold_s, 0, 0, 60, "a ball lost for longer stops; 0: never"},
       {"radio.device", VS_CONFIG_TEXT, c->radio, sizeof c->radio, 0, 0, "serial device; empty: a dry run"},
       {"radio.baud", VS_CONFIG_INT, &d->baud, 0, 1200, 4000000, "of the serial device"},

@@ -118,7 +118,8 @@ static vs_status open_brain(vs_field *f, const char *uri, vs_control **control, 
     vs_player_close(player);
     return s;
   }
-  return vs_control_reset(*control, f->def.seed, false, err);
+  s = vs_control_set_latency(*control, f->def.latency_s, err);
+  return s == VS_OK ? vs_control_reset(*control, f->def.seed, false, err) : s;
 }
 
 vs_status vs_field_new(const vs_field_def *def, vs_field **out, char *note, size_t note_size, vs_error *err) {
