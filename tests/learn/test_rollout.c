@@ -75,6 +75,36 @@ static void a_mirrored_observation_drives_mirrored_wheels(void **state) {
   vs_train_free(t);
 }
 
+// With augment, rows are shown versions of their own, kept for so many decisions; a mirror image drives mirrored wheels.
+static void augmented_rows_see_versions_that_change_now_and_then(void **state) {
+  (void)state;
+  vs_train *t = open_tiny("frozen", 7);
+  vs_rollout *r = &t->rollout;
+  r->def.io.augment = 3;
+  assert_ok(t->matches.reset(t->matches.self, &r->io, err));
+  vs_rollout_begin(r);
+  int mirrored = 0, changed = 0, steps = 9;
+  for (int step = 0; step < steps; step++)
+    for (int row = 0; row < r->rows; row++) {
+      if (row == 0) {
+        for (int k = 0; k < r->rows; k++) {
+          float *newest = r->io.observation + (r->row[k] + 1) * VS_OBS_SIZE - VS_OBS_FRAME;
+          newest[VS_OBS_BALL_XY + 1] = 0.5f;
+        }
+        vs_rollout_act(r, step, t->learner.parameters);
+      }
+      size_t at = (size_t)step * (size_t)r->rows + (size_t)row;
+      int flip = r->x[(at + 1) * VS_OBS_SIZE - VS_OBS_FRAME + VS_OBS_BALL_XY + 1] < 0;
+      int before = step > 0 && r->x[(at - (size_t)r->rows + 1) * VS_OBS_SIZE - VS_OBS_FRAME + VS_OBS_BALL_XY + 1] < 0;
+      mirrored += flip;
+      changed += step > 0 && flip != before;
+      assert_near(r->io.action[2 * r->row[row] + flip], command(t, r->log_u[2 * at]), 1e-6);
+    }
+  assert_in_range(mirrored, steps * r->rows / 4, steps * r->rows * 3 / 4);
+  assert_in_range(changed, 1, (steps - 1) * r->rows / 3); // half of every third
+  vs_train_free(t);
+}
+
 // Each row draws from its own stream: an action depends on seed, decision and row, not on who else plays.
 static void the_present_policy_plays_the_same_whatever_the_opponents(void **state) {
   (void)state;
@@ -94,6 +124,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(episodes_terminate_by_goals_or_are_truncated_and_rewards_are_the_weighted_terms),
       cmocka_unit_test(a_mirrored_observation_drives_mirrored_wheels),
+      cmocka_unit_test(augmented_rows_see_versions_that_change_now_and_then),
       cmocka_unit_test(the_present_policy_plays_the_same_whatever_the_opponents),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
