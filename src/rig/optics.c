@@ -15,8 +15,8 @@ static void undistort(double k1, double xd, double yd, double *x, double *y) {
   }
 }
 
-// What lies outside the straight picture looks like its edge.
-static uint32_t fixed(double px, int size) { return (uint32_t)lround(256 * fmin(fmax(px - 0.5, 0), size - 1.001)); }
+// What lies outside the straight picture looks like its edge. In 1/256 of a pixel; the next pixel is there to blend with.
+static uint32_t fixed(double px, int size) { return (uint32_t)fmin(fmax(256 * (px - 0.5), 0), 256 * (size - 1) - 1); }
 
 static vs_status grind_lens(vs_optics *o, double focal_px, vs_error *err) {
   size_t pixels = (size_t)o->width * (size_t)o->height;
