@@ -98,6 +98,10 @@ VSSS_API vs_pose vs_world_parked(vs_team team, int robot);
 // All numbers finite and within 1 m outside the field; names the first that is not.
 VSSS_API vs_status vs_world_check(const vs_world *world, vs_error *err);
 
+// Whether every number is finite, every flag a flag and the time such that it can be reckoned with: false for worlds that
+// only a damaged snapshot holds.
+VSSS_API bool vs_world_ok(const vs_world *world);
+
 // FNV-1a over the bits of every number (not the padding): equal worlds, equal hash.
 VSSS_API uint64_t vs_world_hash(uint64_t hash, const vs_world *world); // start with VS_HASH_START
 #define VS_HASH_START UINT64_C(0xcbf29ce484222325)

@@ -100,32 +100,35 @@ vs_status vs_control_set_latency(vs_control *control, double latency_s, vs_error
 }
 
 // What the player is shown: the team's view of the world at the moment when its command will act.
-static void show(state *now, vs_team team, const vs_world *absolute, const vs_game *game, vs_world *view,
-                 vs_game *game_view) {
-  vs_world ahead = *absolute;
-  if (now->latency_s > 0) {
-    vs_predictor_see(&now->predictor, team, now->latency_s, absolute);
-    vs_predictor_ahead(&now->predictor, team, now->latency_s, &ahead);
+static void show(vs_predictor *predictor, double latency_s, vs_team team, const vs_world *absolute, const vs_game *game,
+                 vs_world *view, vs_game *game_view) {
+  vs_world ahead;
+  if (latency_s > 0) {
+    vs_predictor_see(predictor, team, latency_s, absolute);
+    vs_predictor_ahead(predictor, team, latency_s, &ahead);
+    absolute = &ahead;
   }
-  vs_world_for_team(&ahead, team, view);
+  vs_world_for_team(absolute, team, view);
   vs_game_for_team(game, team, game_view);
 }
 
 void vs_control_observe(vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game) {
+  state *now = &control->now;
   vs_world view;
   vs_game game_view;
-  show(&control->now, team, absolute, game, &view, &game_view);
-  vs_observer_push(&control->now.observer, &view, &game_view, control->now.action);
+  show(&now->predictor, now->latency_s, team, absolute, game, &view, &game_view);
+  vs_observer_push(&now->observer, &view, &game_view, now->action);
 }
 
 void vs_control_peek(const vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game,
                      vs_observer *out) {
-  state now = control->now;
+  const state *now = &control->now;
+  vs_predictor predictor = now->predictor;
   vs_world view;
   vs_game game_view;
-  show(&now, team, absolute, game, &view, &game_view);
-  vs_observer_push(&now.observer, &view, &game_view, now.action);
-  *out = now.observer;
+  show(&predictor, now->latency_s, team, absolute, game, &view, &game_view);
+  *out = now->observer;
+  vs_observer_push(out, &view, &game_view, now->action);
 }
 
 // A scripted team at its own rate. It is observed at the policy's rate all the same, so that it can be imitated.
@@ -137,7 +140,7 @@ static vs_status step_scripted(vs_control *control, vs_team team, const vs_world
   if (!*decided) return VS_OK;
   vs_world view;
   vs_game game_view;
-  show(now, team, absolute, game, &view, &game_view);
+  show(&now->predictor, now->latency_s, team, absolute, game, &view, &game_view);
   double since_s = now->played ? now->since_decision_s : now->decide.period_s;
   vs_status status = vs_player_step(control->player, &view, &game_view, since_s, now->wheels, err);
   if (status != VS_OK) return status;
@@ -208,14 +211,9 @@ static bool metronome_ok(const metronome *m, const metronome *mine) {
 }
 
 static bool predictor_ok(const vs_predictor *p) {
-  bool ok = p->commands.count >= 0 && p->commands.count <= VS_COMMANDS_KEPT && vs_are_bools(&p->started, 1) &&
-            vs_all_finite(&p->commands.wheels[0][0].left_radps, sizeof p->commands.wheels / sizeof(double)) &&
-            vs_all_finite(&p->now.ball.x_m, 6) && vs_are_bools(&p->now.ball.valid, 1);
-  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
-    const vs_robot *r = &p->now.robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
-    ok = ok && vs_all_finite(&r->pose.x_m, 8) && vs_are_bools(&r->valid, 1);
-  }
-  return ok;
+  return p->commands.count >= 0 && p->commands.count <= VS_COMMANDS_KEPT && vs_are_bools(&p->started, 1) &&
+         vs_all_finite(&p->commands.wheels[0][0].left_radps, sizeof p->commands.wheels / sizeof(double)) &&
+         vs_world_ok(&p->now);
 }
 
 // mine: of the same player.

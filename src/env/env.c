@@ -330,18 +330,9 @@ void vs_env_save(const vs_env *env, void *state) {
   }
 }
 
-static bool world_ok(const vs_world *w) {
-  bool ok = vs_all_finite(&w->ball.x_m, 6) && vs_are_bools(&w->ball.valid, 1);
-  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
-    const vs_robot *r = &w->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
-    ok = ok && vs_all_finite(&r->pose.x_m, 8) && vs_are_bools(&r->valid, 1);
-  }
-  return ok && llabs(w->time_us) < INT64_C(1) << 53;
-}
-
 static bool match_ok(const match *m, const vs_env_def *def) {
-  return vs_referee_ok(&m->referee, &def->referee) && vs_sensors_ok(&m->sensors) && world_ok(&m->truth) &&
-         world_ok(&m->judged) && world_ok(&m->measured) && world_ok(&m->sensors.last) &&
+  return vs_referee_ok(&m->referee, &def->referee) && vs_sensors_ok(&m->sensors) && vs_world_ok(&m->truth) &&
+         vs_world_ok(&m->judged) && vs_world_ok(&m->measured) && vs_world_ok(&m->sensors.last) &&
          vs_all_finite(&m->wheels[0][0].left_radps, sizeof m->wheels / sizeof(double)) &&
          vs_are_bools(m->decided, VS_TEAMS) &&
          vs_all_finite(&m->commanded[0][0][0], sizeof m->commanded / sizeof(double)) && m->commanded_frames >= 0 &&

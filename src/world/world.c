@@ -2,7 +2,9 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
+#include "vsss/check.h"
 #include "vsss/field.h"
 #include "vsss/geom.h"
 
@@ -80,6 +82,15 @@ vs_status vs_world_check(const vs_world *world, vs_error *err) {
   const double value[] = {b->z_m, b->vx_mps, b->vy_mps, b->vz_mps};
   if (check_point("ball", 0, b->x_m, b->y_m, err) != VS_OK) return VS_FAIL;
   return check_numbers("ball", 0, value, sizeof value / sizeof *value, err);
+}
+
+bool vs_world_ok(const vs_world *w) {
+  bool ok = vs_all_finite(&w->ball.x_m, 6) && vs_are_bools(&w->ball.valid, 1);
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
+    const vs_robot *r = &w->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+    ok = ok && vs_all_finite(&r->pose.x_m, 8) && vs_are_bools(&r->valid, 1);
+  }
+  return ok && llabs(w->time_us) < INT64_C(1) << 53;
 }
 
 uint64_t vs_hash_bytes(uint64_t hash, const void *data, unsigned long size) {
