@@ -1,6 +1,7 @@
 // Stable: part of libvsss (deploy/docs/library.md).
 //
 // Sizes of the 3 against 3 field, ball and robot (paper, Table 1 and section VI; IEEE VSSS rules 2008).
+// The nominal robot's servo and the ball's rolling are the simulator's (src/sim/drive.h says whence).
 // Origin in the field's centre, x towards the goal that blue attacks, y to blue's left, z up. Metres, kilograms.
 #ifndef VSSS_FIELD_H
 #define VSSS_FIELD_H
@@ -29,5 +30,12 @@
 #define VS_WHEEL_WIDTH_M     0.006
 #define VS_HALF_TRACK_M      0.035
 #define VS_WHEEL_LIMIT_RADPS 46.66 // 1.4 m/s at the rim (paper, section VI)
+
+#define VS_BALL_DECELERATION_MPS2 0.20 // rolling
+
+// Each wheel's torque is the gain times (command - speed), within the limit.
+#define VS_SERVO_GAIN_NMSPRAD 3.94e-3
+#define VS_SERVO_LIMIT_NM     0.0303
+#define VS_SERVO_TAU_S        0.055 // what comes of it within 0.23 m/s of the command, going straight
 
 #endif

@@ -7,10 +7,8 @@
 #include "cli.h"
 #include "commands.h"
 #include "motion_log.h"
+#include "vsss/field.h"
 #include "vsss/file.h"
-
-// The simulator's own servo: first-order, field.md, Ranges. What a robot takes beyond it is motor_tau_s.
-#define SERVO_TAU_S 0.055
 
 typedef struct robots {
   bool known[VS_TEAM_SIZE];
@@ -29,7 +27,8 @@ static vs_status write_realism(const char *path, const robots *r, double to_byte
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     if (!r->known[i]) continue;
     widen(fmin(to_bytes_s + r->is[i].delay_s, 0.2), &latency[0], &latency[1]);
-    widen(fmax(0, r->is[i].tau_straight_s - SERVO_TAU_S), &tau[0], &tau[1]);
+    // Beyond the simulator's own servo (field.md, Ranges).
+    widen(fmax(0, r->is[i].tau_straight_s - VS_SERVO_TAU_S), &tau[0], &tau[1]);
     widen(r->is[i].gain_left, &gain[0], &gain[1]);
     widen(r->is[i].gain_right, &gain[0], &gain[1]);
   }
@@ -37,7 +36,7 @@ static vs_status write_realism(const char *path, const robots *r, double to_byte
                    "# Of measured robots, by `vsss identify`. Latency: mid-exposure to wheel; motor_tau_s: beyond the "
                    "servo's own %.0f ms.\nnoise = true\n\n[latency_s]\nlow = %.4f\nhigh = %.4f\n\n[motor_tau_s]\nlow = "
                    "%.4f\nhigh = %.4f\n\n[wheel_gain]\nlow = %.4f\nhigh = %.4f\n",
-                   1e3 * SERVO_TAU_S, latency[0], latency[1], tau[0], tau[1], gain[0], gain[1]);
+                   1e3 * VS_SERVO_TAU_S, latency[0], latency[1], tau[0], tau[1], gain[0], gain[1]);
   return vs_file_replace(path, text, (size_t)n, err);
 }
 
@@ -96,10 +95,9 @@ int cmd_identify(int argc, char **argv) {
                     "seen. Record the log with 'vsss field --policy shake: --go --seconds 60 --record LOG'.",
                     flags, &words, &help, &err);
   if (s == VS_OK && help) return 0;
-  if (s == VS_OK && words.count != 1) s = vs_fail(&err, VS_USAGE, "expected one log, of 'vsss field --record LOG'");
   vs_motion_log log = {0};
   robots found = {0};
-  if (s == VS_OK) s = vs_motion_log_read(words.value[0], config, &log, &err);
+  if (s == VS_OK) s = vs_motion_log_read(&words, config, &log, &err);
   if (s == VS_OK) s = identify(&log, &found, &err);
   if (s == VS_OK) {
     double to_bytes_s = 1e-3 * vs_motion_quantile(log.age_ms, log.ages, 0.5);

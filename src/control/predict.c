@@ -6,16 +6,13 @@
 #include "vsss/field.h"
 #include "vsss/geom.h"
 
-#define STEP_S                 (1.0 / 120)
-#define HALF_ROBOT_M           (VS_ROBOT_SIZE_M / 2)
-#define BALL_DECELERATION_MPS2 0.20 // rolling (models/vsss_contact.xml)
-#define REBOUND                0.6  // of the ball's speed into a wall is left
+#define STEP_S       (1.0 / 120)
+#define HALF_ROBOT_M (VS_ROBOT_SIZE_M / 2)
+#define REBOUND      0.6 // of the ball's speed into a wall is left
 
-// The wheel servo and what it moves, the geared rotors included (sim/drive.h, models/vsss_contact.xml).
-#define SERVO_GAIN_NMSPRAD 3.94e-3
-#define SERVO_LIMIT_NM     0.0303
-#define MOVED_KG           0.48
-#define TURNED_KGM2        4.33e-4
+// What a robot's wheels move, their geared rotors included (sim/drive.h, models/vsss_contact.xml).
+#define MOVED_KG    0.48
+#define TURNED_KGM2 4.33e-4
 
 void vs_predictor_command(vs_predictor *predictor, int64_t time_us, const vs_wheels wheels[VS_TEAM_SIZE]) {
   vs_commands *c = &predictor->commands;
@@ -54,8 +51,8 @@ static void keep_in(vs_robot *robot) {
 static double pull(double command_radps, double rim_mps, double dt_s) {
   double limit = VS_WHEEL_LIMIT_RADPS, r = VS_WHEEL_RADIUS_M;
   double gap_radps = vs_clamp(command_radps, -limit, limit) - rim_mps / r;
-  double damping = SERVO_GAIN_NMSPRAD / (1.0 + dt_s * 2 * SERVO_GAIN_NMSPRAD / (MOVED_KG * r * r));
-  return vs_clamp(damping * gap_radps, -SERVO_LIMIT_NM, SERVO_LIMIT_NM) / r;
+  double damping = VS_SERVO_GAIN_NMSPRAD / (1.0 + dt_s * 2 * VS_SERVO_GAIN_NMSPRAD / (MOVED_KG * r * r));
+  return vs_clamp(damping * gap_radps, -VS_SERVO_LIMIT_NM, VS_SERVO_LIMIT_NM) / r;
 }
 
 static void drive(vs_robot *robot, const vs_wheels *wheels, double dt_s) {
@@ -93,7 +90,7 @@ static void rebound(double *place, double *speed, double half) {
 }
 
 static void roll(vs_ball *ball, double dt_s) {
-  double speed = hypot(ball->vx_mps, ball->vy_mps), slower = speed - BALL_DECELERATION_MPS2 * dt_s;
+  double speed = hypot(ball->vx_mps, ball->vy_mps), slower = speed - VS_BALL_DECELERATION_MPS2 * dt_s;
   double scale = speed > 0 && slower > 0 ? slower / speed : 0;
   ball->vx_mps *= scale;
   ball->vy_mps *= scale;

@@ -100,8 +100,8 @@ static void slide(traction *t, wheel_state wheel[SIDES]) {
 }
 
 static double motor_torque(const wheel_state *wheel, double scale) {
-  double limit = scale * SERVO_LIMIT_NM;
-  return vs_clamp(scale * SERVO_GAIN_NMSPRAD * (wheel->target_radps - wheel->speed_radps), -limit, limit);
+  double limit = scale * VS_SERVO_LIMIT_NM;
+  return vs_clamp(scale * VS_SERVO_GAIN_NMSPRAD * (wheel->target_radps - wheel->speed_radps), -limit, limit);
 }
 
 static void step_planar_robot(vs_sim *sim, int index) {

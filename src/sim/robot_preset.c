@@ -29,7 +29,7 @@ vs_sim_params vs_robot_preset_params(const vs_robot_preset *preset) {
   vs_sim_params params = vs_sim_params_default();
   params.ball_restitution = preset->ball_restitution;
   if (preset->ball_deceleration_mps2 > 0)
-    params.ball_rolling_scale = preset->ball_deceleration_mps2 / BALL_DECELERATION_MPS2;
+    params.ball_rolling_scale = preset->ball_deceleration_mps2 / VS_BALL_DECELERATION_MPS2;
   if (preset->accelerate_mps2 <= 0) return params;
   params.accelerate_mps2 = preset->accelerate_mps2;
   params.brake_mps2 = preset->brake_mps2;

@@ -107,11 +107,11 @@ static vs_status bind_wheel(vs_model *model, const char *path, robot_address *ro
   TRY(expect(path, name, "axle height", place[2], VS_WHEEL_RADIUS_M, 1e-9, err));
   robot->servo[side] = servo;
   const double *limit = mj->actuator_forcerange + 2 * servo;
-  TRY(expect(path, name, "servo gain", mj->actuator_gainprm[mjNGAIN * servo], SERVO_GAIN_NMSPRAD, 1e-9, err));
-  TRY(expect(path, name, "servo speed gain", -mj->actuator_biasprm[mjNBIAS * servo + 2], SERVO_GAIN_NMSPRAD, 1e-9,
+  TRY(expect(path, name, "servo gain", mj->actuator_gainprm[mjNGAIN * servo], VS_SERVO_GAIN_NMSPRAD, 1e-9, err));
+  TRY(expect(path, name, "servo speed gain", -mj->actuator_biasprm[mjNBIAS * servo + 2], VS_SERVO_GAIN_NMSPRAD, 1e-9,
              err));
-  TRY(expect(path, name, "torque limit", limit[1], SERVO_LIMIT_NM, 1e-9, err));
-  TRY(expect(path, name, "torque limit backwards", -limit[0], SERVO_LIMIT_NM, 1e-9, err));
+  TRY(expect(path, name, "torque limit", limit[1], VS_SERVO_LIMIT_NM, 1e-9, err));
+  TRY(expect(path, name, "torque limit backwards", -limit[0], VS_SERVO_LIMIT_NM, 1e-9, err));
   TRY(expect(path, name, "rotor inertia", mj->dof_armature[robot->wheel_qvel[side]], ROTOR_INERTIA_KGM2, 1e-12, err));
   return VS_OK;
 }
