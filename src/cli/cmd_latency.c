@@ -81,9 +81,8 @@ int cmd_latency(int argc, char **argv) {
                     "'vsss field --policy shake: --go --seconds 60 --record LOG'.",
                     flags, &words, &help, &err);
   if (s == VS_OK && help) return 0;
-  if (s == VS_OK && words.count != 1) s = vs_fail(&err, VS_USAGE, "expected one log, of 'vsss field --record LOG'");
   vs_motion_log log = {0};
-  if (s == VS_OK) s = vs_motion_log_read(words.value[0], config, &log, &err);
+  if (s == VS_OK) s = vs_motion_log_read(&words, config, &log, &err);
   if (s == VS_OK) s = report(&log, json, &err);
   vs_motion_log_free(&log);
   return s == VS_OK ? 0 : vs_cli_error("latency", &err);

@@ -105,8 +105,10 @@ static vs_status read_all(vs_bus_log *log, const marks *own, vs_motion_log *out,
   }
 }
 
-vs_status vs_motion_log_read(const char *path, const char *config, vs_motion_log *out, vs_error *err) {
+vs_status vs_motion_log_read(const vs_flag_list *words, const char *config, vs_motion_log *out, vs_error *err) {
   memset(out, 0, sizeof *out);
+  if (words->count != 1) return vs_fail(err, VS_USAGE, "expected one log, of 'vsss field --record LOG'");
+  const char *path = words->value[0];
   vs_bus_log *log = NULL;
   marks own;
   vs_status s = vs_bus_supported(err);

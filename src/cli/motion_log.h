@@ -2,6 +2,7 @@
 #ifndef VSSS_CLI_MOTION_LOG_H
 #define VSSS_CLI_MOTION_LOG_H
 
+#include "cli.h"
 #include "vsss/identify.h"
 
 typedef struct vs_motion_robot {
@@ -18,8 +19,8 @@ typedef struct vs_motion_log {
   int capacity;
 } vs_motion_log;
 
-// config NULL: the log's own, or where it has none deploy/config/field.ini. VS_FAIL: no commands or no detections in it.
-vs_status vs_motion_log_read(const char *path, const char *config, vs_motion_log *out, vs_error *err);
+// From a command's words, which must be one log. config NULL: the log's own, or where it has none deploy/config/field.ini. VS_FAIL: no commands or no detections in it.
+vs_status vs_motion_log_read(const vs_flag_list *words, const char *config, vs_motion_log *out, vs_error *err);
 void vs_motion_log_free(vs_motion_log *log);
 
 // p of 0..1 of n values, which it sorts; 0 where there are none.

@@ -1,5 +1,6 @@
 // src/cli/cmd_identify.c, src/cli/cmd_latency.c, src/cli/motion_log.c and the player shake: (src/policy/player_simple.c): a
 // rig whose robots act late is recorded and measured, and the rig itself says how late they were.
+#include "cli/command_log.h"
 #include "cli/field_match.h"
 #include "test_folder.h"
 
@@ -82,14 +83,9 @@ static void a_rig_is_measured_as_it_is(void **state) {
 static void what_cannot_be_measured_is_named(void **state) {
   (void)state;
   if (vs_bus_supported(NULL) != VS_OK) skip();
-  char path[96], url[160], arguments[160];
+  char path[96], arguments[160];
   snprintf(path, sizeof path, "%s/empty.lcm", folder);
-  snprintf(url, sizeof url, "file://%s?mode=w", path);
-  vs_bus *log;
-  assert_ok(vs_bus_open(url, &log, err));
-  vs_message m = {.channel = VS_CH_CMD};
-  assert_ok(vs_bus_publish(log, &m, err));
-  vs_bus_close(log);
+  write_log_of_a_command(path);
   snprintf(arguments, sizeof arguments, "identify %s", path);
   assert_refused(arguments, 1, "holds no sights of blue");
   snprintf(arguments, sizeof arguments, "latency %s", path);

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
+#include "cli/command_log.h"
 #include "cli/field_venue.h"
 #include "cli_bus.h"
 #include "policy/plugins/compile.h"
@@ -176,14 +177,9 @@ static void what_a_referee_says_is_in_the_record_and_the_key_is_not(void **state
 static void what_is_no_record_is_named(void **state) {
   (void)state;
   if (vs_bus_supported(NULL) != VS_OK) skip();
-  char path[96], url[160], arguments[160];
+  char path[96], arguments[160];
   snprintf(path, sizeof path, "%s/other.lcm", folder);
-  snprintf(url, sizeof url, "file://%s?mode=w", path);
-  vs_bus *log;
-  assert_ok(vs_bus_open(url, &log, err));
-  vs_message m = {.channel = VS_CH_CMD};
-  assert_ok(vs_bus_publish(log, &m, err));
-  vs_bus_close(log);
+  write_log_of_a_command(path);
   snprintf(arguments, sizeof arguments, "replay %s --check", path);
   assert_refused(arguments, 1, "holds no VSSS_SETUP: not a record of 'vsss field --record'");
   snprintf(arguments, sizeof arguments, "replay %s --check --publish", path);
