@@ -1,4 +1,4 @@
-// src/field/field_loop.c and src/field/tap.c
+// src/field/field_loop.c, src/field/field_open.c, src/field/orders.c, src/field/field_stats.c and src/field/tap.c
 #include <string.h>
 
 #include "assert_near.h"
