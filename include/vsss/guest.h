@@ -1,10 +1,10 @@
 // Our team as a guest in another simulator of the league (FIRASim, TraveSim, `vsss serve`): world from its vision, wheel
-// commands to its radio, moved by the network referee. The same control and safety as on the field; the simulator's
+// commands to its radio, moved by the network referee: GAME ON is the go. The same control and safety as on the field; the simulator's
 // vision needs no tracker.
 #ifndef VSSS_GUEST_H
 #define VSSS_GUEST_H
 
-#include "vsss/league_messages.h"
+#include "vsss/net_referee.h"
 #include "vsss/safety.h"
 
 #ifdef __cplusplus
@@ -19,27 +19,16 @@ typedef struct vs_guest_def {
   double wheel_radius_m;                   // of the simulator's robots: 0.02 in FIRASim, 0.025 in TraveSim
   double step_s;                           // what the vision's step counts: 0.001 in FIRASim, 0.01 in TraveSim
   int vision, command, referee, placement; // ports
+  bool go;                                 // play before any call was heard, as where there is no referee
   bool dry;                                // send nothing
   const char *interface;                   // NULL: loopback
 } vs_guest_def;
-
-// What the network referee's calls mean for us. Until the first is heard we play.
-typedef enum vs_guest_state {
-  VS_GUEST_PLAY,    // GAME_ON
-  VS_GUEST_PLACING, // a foul or kick-off is called: say where we want to stand, hold the robots
-  VS_GUEST_STOPPED, // STOP
-  VS_GUEST_HALTED,  // HALT
-} vs_guest_state;
-const char *vs_guest_state_name(vs_guest_state state);
-vs_guest_state vs_guest_next(vs_foul foul); // the table: whatever the state was
-// The call as an event of ours: NONE where play just stops or goes on.
-vs_event vs_guest_event(const vs_ref_command *call, double time_s);
 
 typedef struct vs_guest_tick_result {
   bool seen; // a world came; the rest is valid then
   vs_world world;
   vs_game game;
-  vs_guest_state state;
+  vs_net_state state; // by the referee's calls
   vs_safety_state safety;
   vs_wheels wheels[VS_TEAM_SIZE]; // rad/s of our wheels
 } vs_guest_tick_result;
@@ -51,9 +40,11 @@ typedef struct vs_guest_stats {
 typedef struct vs_guest vs_guest;
 vs_status vs_guest_new(const vs_guest_def *def, vs_guest **out, vs_error *err);
 void vs_guest_free(vs_guest *guest); // the robots stop; NULL is allowed
+// The operator's word: go plays where no call was heard; a stop holds whatever the referee calls, until the next go.
+void vs_guest_arm(vs_guest *guest, bool go);
 // Waits up to 100 ms for the newest world and answers it.
 vs_status vs_guest_tick(vs_guest *guest, vs_guest_tick_result *out, vs_error *err);
-const vs_guest_stats *vs_guest_get_stats(const vs_guest *guest);
+const vs_guest_stats *vs_guest_get_stats(vs_guest *guest);
 
 #ifdef __cplusplus
 }

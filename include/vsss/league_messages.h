@@ -82,6 +82,9 @@ typedef struct vs_ref_command {
 } vs_ref_command;
 size_t vs_ref_command_encode(const vs_ref_command *command, uint8_t *out, size_t out_size);
 vs_status vs_ref_command_decode(const uint8_t *data, size_t size, vs_ref_command *out, vs_error *err);
+// A referee sends each call ten times: whether this is the one before again. One that was corrected (the other team,
+// another quadrant at the same second) is not.
+bool vs_ref_command_repeats(const vs_ref_command *before, const vs_ref_command *now);
 
 // Where a team wants its robots at a restart.
 typedef struct vs_ref_placement {

@@ -40,7 +40,8 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
       {"wire", VS_FLAG_TEXT, &o->wire, "NAME",
        "what the robots speak: vsss, pequi-xbee, sysmic, sysmic-vw, neon, unball; default: field.ini's", 0, 0},
       {"policy", VS_FLAG_TEXT, &o->policy, "URI", "who decides; default: field.ini's", 0, 0},
-      {"go", VS_FLAG_SWITCH, &o->go, NULL, "the robots may move at once: for rigs and unattended tests", 0, 0},
+      {"go", VS_FLAG_SWITCH, &o->go, NULL, "the robots may move at once: for rigs, simulators without a referee, tests",
+       0, 0},
       {"referee", VS_FLAG_TEXT, &o->referee, "lcm|FILE",
        "says go and stop beside the keys: VSSS_REFEREE, or words in a pipe", 0, 0},
       {"fallback", VS_FLAG_TEXT, &o->fallback, "URI", "takes over when the policy fails", 0, 0},
@@ -226,11 +227,13 @@ int cmd_field(int argc, char **argv) {
   if (s != VS_OK) return vs_cli_error("field", &err);
   if (field_guest_is(o.camera) || field_guest_is(o.radio)) {
     const vs_field_def *def = &config.def;
-    const field_guest guest = {o.camera,  o.radio,         def->policy, def->team,
-                               def->seed, def->duration_s, o.seconds,   o.record};
+    const field_guest guest = {o.camera,        o.radio,   def->policy, def->team, def->seed,
+                               def->duration_s, o.seconds, o.record,    o.go,      o.referee};
     vs_cli_catch_interrupts();
     if (o.rt) vs_cli_realtime(o.rt);
-    s = field_guest_play(&guest, &err);
+    s = o.referee && !strcmp(o.referee, "lcm")
+            ? vs_fail(&err, VS_USAGE, "--referee lcm: in a simulator the network referee is obeyed without a flag")
+            : field_guest_play(&guest, &err);
     return s == VS_OK ? 0 : vs_cli_error("field", &err);
   }
   config.def.record = is_table(o.record) ? NULL : o.record;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli.h"
+#include "operator.h"
 #include "vsss/clock.h"
 #include "vsss/guest.h"
 #include "vsss/robot_preset.h"
@@ -61,68 +62,115 @@ static vs_status fill(const field_guest *o, vs_guest_def *def, vs_error *err) {
   return VS_OK;
 }
 
-static vs_status play(const field_guest *o, vs_guest *guest, vs_world_csv *record, vs_error *err) {
+typedef struct watch {
   vs_progress progress;
-  vs_progress_start(&progress);
-  vs_guest_state before = VS_GUEST_PLAY;
-  int64_t start_us = vs_clock_monotonic_us(), seen_us = start_us;
-  double spent_s = 0;
-  bool told = false;
-  vs_status s = VS_OK;
-  while (s == VS_OK && !vs_cli_interrupted() && (o->seconds == 0.0 || spent_s < o->seconds)) {
-    vs_guest_tick_result tick;
-    s = vs_guest_tick(guest, &tick, err);
-    int64_t now_us = vs_clock_monotonic_us();
-    spent_s = 1e-6 * (double)(now_us - start_us);
-    if (s != VS_OK) break;
-    if (tick.seen) {
-      seen_us = now_us;
-      told = false;
-      vs_world_csv_write(record, &tick.world, VS_EVENT_NONE);
-    }
-    if (!told && now_us - seen_us > 5000000) {
-      vs_progress_clear(&progress);
-      printf("no world for 5 s: is the simulator running, and on these ports?\n");
-      fflush(stdout);
-      told = true;
-    }
-    if (!tick.seen) continue;
-    const vs_game *game = &tick.game;
-    if (tick.state != before) {
-      vs_progress_clear(&progress);
-      printf("%7.2f s  %s, %s  %d : %d\n", game->time_s, vs_event_name(game->last_event.kind),
-             vs_guest_state_name(tick.state), game->score[VS_BLUE], game->score[VS_YELLOW]);
-      fflush(stdout);
-      before = tick.state;
-    }
-    char text[120];
-    snprintf(text, sizeof text, "%d : %d  %5.1f s  %s  %s", game->score[VS_BLUE], game->score[VS_YELLOW], game->time_s,
-             vs_guest_state_name(tick.state), vs_safety_name(tick.safety));
-    vs_progress_show(&progress, o->seconds > 0 ? spent_s / o->seconds : game->time_s / game->duration_s, text);
+  vs_net_state before;
+  int64_t start_us, seen_us;
+  bool told; // that no world comes
+} watch;
+
+static double spent_s(const watch *w) { return 1e-6 * (double)(vs_clock_monotonic_us() - w->start_us); }
+
+static void tell(watch *w, const char *text) {
+  vs_progress_clear(&w->progress);
+  printf("%s\n", text);
+  fflush(stdout);
+}
+
+// False: the operator ends play.
+static bool obey(vs_operator *operator_, vs_guest *guest, watch *w) {
+  char unknown[24], text[96];
+  vs_order order = vs_operator_poll(operator_, unknown);
+  if (order == VS_ORDER_NONE) return true;
+  vs_guest_arm(guest, order == VS_ORDER_GO);
+  if (*unknown)
+    snprintf(text, sizeof text, "referee: '%s' is none of go, stop, halt; stopped", unknown);
+  else
+    snprintf(text, sizeof text, "%8.2f s  %s", spent_s(w), order == VS_ORDER_GO ? "go" : "stop");
+  if (order != VS_ORDER_QUIT) tell(w, text);
+  return order != VS_ORDER_QUIT;
+}
+
+static void watch_silence(watch *w, bool seen) {
+  int64_t now_us = vs_clock_monotonic_us();
+  if (seen) {
+    w->seen_us = now_us;
+    w->told = false;
+  } else if (!w->told && now_us - w->seen_us > 5000000) {
+    tell(w, "no world for 5 s: is the simulator running, and on these ports?");
+    w->told = true;
   }
-  vs_progress_clear(&progress);
+}
+
+static void show(const field_guest *o, watch *w, const vs_guest_tick_result *tick) {
+  const vs_game *game = &tick->game;
+  char text[120];
+  if (tick->state != w->before) {
+    snprintf(text, sizeof text, "%7.2f s  %s, %s  %d : %d", game->time_s, vs_event_name(game->last_event.kind),
+             vs_net_state_name(tick->state), game->score[VS_BLUE], game->score[VS_YELLOW]);
+    tell(w, text);
+    w->before = tick->state;
+  }
+  snprintf(text, sizeof text, "%d : %d  %5.1f s  %s  %s", game->score[VS_BLUE], game->score[VS_YELLOW], game->time_s,
+           vs_net_state_name(tick->state), vs_safety_name(tick->safety));
+  vs_progress_show(&w->progress, o->seconds > 0 ? spent_s(w) / o->seconds : game->time_s / game->duration_s, text);
+}
+
+static vs_status play(const field_guest *o, vs_guest *guest, vs_operator *operator_, vs_world_csv *record,
+                      vs_error *err) {
+  watch w = {.before = VS_NET_WAITING, .start_us = vs_clock_monotonic_us()};
+  w.seen_us = w.start_us;
+  vs_progress_start(&w.progress);
+  vs_status s = VS_OK;
+  while (!vs_cli_interrupted() && (o->seconds == 0.0 || spent_s(&w) < o->seconds)) {
+    vs_guest_tick_result tick;
+    if (!obey(operator_, guest, &w)) break;
+    s = vs_guest_tick(guest, &tick, err);
+    if (s != VS_OK) break;
+    watch_silence(&w, tick.seen);
+    if (!tick.seen) continue;
+    vs_world_csv_write(record, &tick.world, VS_EVENT_NONE);
+    show(o, &w, &tick);
+  }
+  vs_progress_clear(&w.progress);
   return s;
+}
+
+static vs_status play_recorded(const field_guest *o, vs_guest *guest, vs_error *err) {
+  vs_world_csv record;
+  vs_operator operator_;
+  vs_error at_close = {0};
+  vs_status s = vs_operator_open(o->words, &operator_, err);
+  if (s != VS_OK) return s;
+  s = vs_world_csv_open(o->record, &record, err);
+  if (s == VS_OK) {
+    s = play(o, guest, &operator_, &record, err);
+    if (vs_world_csv_close(&record, &at_close) != VS_OK && s == VS_OK) s = vs_fail(err, VS_FAIL, "%s", at_close.text);
+  }
+  vs_operator_close(&operator_);
+  return s;
+}
+
+static void print_setup(const field_guest *o, const vs_guest_def *def) {
+  printf("world from %s, port %d; %s plays %s; commands to port %d%s\n", o->camera, def->vision, o->policy,
+         vs_team_name(o->team), def->command, def->dry ? ": none, a dry run (--radio firasim:)" : "");
+  printf("the robots %s; keys: %s\n",
+         def->go ? "play, and stand when the network referee says so" : "stand until the network referee's GAME ON",
+         VS_OPERATOR_KEYS);
+  fflush(stdout);
 }
 
 vs_status field_guest_play(const field_guest *o, vs_error *err) {
   vs_guest_def def;
   vs_guest *guest = NULL;
-  vs_world_csv record;
   vs_status s = fill(o, &def, err);
   if (s == VS_OK) s = vs_guest_new(&def, &guest, err);
   if (s != VS_OK) return s;
-  s = vs_world_csv_open(o->record, &record, err);
-  if (s == VS_OK) {
-    printf("world from %s, port %d; %s plays %s; commands to port %d%s\n", o->camera, def.vision, o->policy,
-           vs_team_name(o->team), def.command, def.dry ? ": none, a dry run (--radio firasim:)" : "");
-    fflush(stdout);
-    s = play(o, guest, &record, err);
-    vs_error at_close = {0};
-    if (vs_world_csv_close(&record, &at_close) != VS_OK && s == VS_OK) s = vs_fail(err, VS_FAIL, "%s", at_close.text);
-    const vs_guest_stats *stats = vs_guest_get_stats(guest);
-    printf("%" PRId64 " worlds, %" PRId64 " decisions, %" PRId64 " calls of the referee, %" PRId64 " placements\n",
-           stats->worlds, stats->decisions, stats->calls, stats->placements);
-  }
+  print_setup(o, &def);
+  s = play_recorded(o, guest, err);
+  const vs_guest_stats *stats = vs_guest_get_stats(guest);
+  printf("%" PRId64 " worlds, %" PRId64 " decisions, %" PRId64 " calls of the referee, %" PRId64 " placements\n",
+         stats->worlds, stats->decisions, stats->calls, stats->placements);
   vs_guest_free(guest);
   return s;
 }

@@ -3,10 +3,9 @@
 #define VSSS_CLI_FIELD_GUEST_H
 
 #include <stdbool.h>
-
-#include "vsss/status.h"
 #include <stdint.h>
 
+#include "vsss/status.h"
 #include "vsss/world.h"
 
 typedef struct field_guest {
@@ -16,6 +15,8 @@ typedef struct field_guest {
   uint64_t seed;
   double duration_s, seconds; // of the match; then stop (0: until Ctrl-C)
   const char *record;         // CSV, may be NULL
+  bool go;                    // play before the network referee has called anything
+  const char *words;          // a file that says go and stop beside the keys (operator.h); NULL: none
 } field_guest;
 
 bool field_guest_is(const char *source); // a simulator's

@@ -11,7 +11,6 @@
 #include "vsss/udp.h"
 
 #define WAIT_US        100000
-#define REFEREE_GROUP  "224.5.23.2"
 #define VISION_GROUP   "224.0.0.1"
 #define SIMULATOR      "127.0.0.1"
 #define LONGEST_STEP_S 0.5 // the simulator was stopped, or restarted
@@ -19,49 +18,17 @@
 struct vs_guest {
   vs_guest_def def;
   vs_control *control;
-  vs_udp vision, referee, command, placement;
+  vs_udp vision, command;
+  vs_net_referee referee;
+  vs_net_word word; // the operator's
   vs_safety safety;
-  vs_guest_state state;
-  vs_ref_command call; // the last one; foul VS_FOULS: none yet
   vs_world world;
   vs_game game;
   uint32_t step;
   int64_t heard_us;
+  int64_t unread; // datagrams that were no world
   vs_guest_stats stats;
 };
-
-const char *vs_guest_state_name(vs_guest_state state) {
-  static const char *const name[] = {"play", "placing", "stopped", "halted"};
-  return name[state];
-}
-
-vs_guest_state vs_guest_next(vs_foul foul) {
-  switch (foul) {
-  case VS_FOUL_GAME_ON: return VS_GUEST_PLAY;
-  case VS_FOUL_STOP: return VS_GUEST_STOPPED;
-  case VS_FOUL_HALT: return VS_GUEST_HALTED;
-  default: return VS_GUEST_PLACING;
-  }
-}
-
-vs_event vs_guest_event(const vs_ref_command *call, double time_s) {
-  vs_event event = {.team = call->team == VS_YELLOW ? VS_YELLOW : VS_BLUE, .time_s = time_s};
-  switch (call->foul) {
-  case VS_FOUL_KICKOFF: event.kind = VS_EVENT_KICK_OFF; break;
-  case VS_FOUL_PENALTY_KICK: event.kind = VS_EVENT_PENALTY; break;
-  case VS_FOUL_GOAL_KICK:
-    event.kind = VS_EVENT_GOAL_KICK;
-    event.quadrant = call->quadrant;
-    break;
-  case VS_FOUL_FREE_BALL:
-    event.kind = VS_EVENT_FREE_BALL;
-    event.quadrant = call->quadrant;
-    break;
-  case VS_FOUL_HALT: event.kind = VS_EVENT_HALT; break;
-  default: event.kind = VS_EVENT_NONE;
-  }
-  return event;
-}
 
 static vs_status open_brain(vs_guest *g, vs_error *err) {
   vs_player *player = NULL;
@@ -81,16 +48,16 @@ vs_status vs_guest_new(const vs_guest_def *def, vs_guest **out, vs_error *err) {
   vs_guest *g = calloc(1, sizeof *g);
   if (!g) return vs_fail(err, VS_FAIL, "out of memory");
   g->def = *def;
-  g->vision = g->referee = g->command = g->placement = VS_UDP_CLOSED;
-  g->call.foul = VS_FOULS;
+  g->vision = g->command = g->referee.calls = g->referee.places = VS_UDP_CLOSED;
+  g->word = def->go ? VS_NET_GO : VS_NET_UNSAID;
   g->game.duration_s = def->duration_s;
   g->game.last_event = (vs_event){.kind = VS_EVENT_KICK_OFF, .team = VS_BLUE};
   vs_safety_init(&g->safety, vs_clock_monotonic_us());
   s = open_brain(g, err);
   if (s == VS_OK) s = vs_udp_join(VISION_GROUP, def->vision, def->interface, &g->vision, err);
-  if (s == VS_OK) s = vs_udp_join(REFEREE_GROUP, def->referee, def->interface, &g->referee, err);
+  if (s == VS_OK)
+    s = vs_net_referee_open(def->referee, def->dry ? 0 : def->placement, def->interface, &g->referee, err);
   if (s == VS_OK && !def->dry) s = vs_udp_sender(SIMULATOR, def->command, NULL, &g->command, err);
-  if (s == VS_OK && !def->dry) s = vs_udp_sender(REFEREE_GROUP, def->placement, def->interface, &g->placement, err);
   if (s != VS_OK) {
     vs_guest_free(g);
     return s;
@@ -118,9 +85,8 @@ void vs_guest_free(vs_guest *g) {
   if (g->command.fd >= 0)
     for (int k = 0; k < 3; k++) send_wheels(g, still);
   vs_udp_close(&g->vision);
-  vs_udp_close(&g->referee);
   vs_udp_close(&g->command);
-  vs_udp_close(&g->placement);
+  vs_net_referee_close(&g->referee);
   vs_control_free(g->control);
   free(g);
 }
@@ -130,37 +96,26 @@ static void send_placement(vs_guest *g) {
   vs_world placed;
   vs_rng unused = vs_rng_make(0, 0);
   vs_ref_placement p = {.team = g->def.team};
-  uint8_t bytes[VS_LEAGUE_DATAGRAM_MAX];
   vs_place(VS_PLACEMENT_PAPER, &g->game.last_event, &g->world, &unused, &placed);
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     p.given[i] = true;
     p.pose[i] = placed.robot[g->def.team][i].pose;
   }
-  size_t size = vs_ref_placement_encode(&p, bytes, sizeof bytes);
-  if (vs_udp_send(&g->placement, bytes, size)) g->stats.placements++;
-}
-
-static void hear(vs_guest *g, const vs_ref_command *call) {
-  if (call->foul == g->call.foul && call->timestamp_s == g->call.timestamp_s && call->team == g->call.team) return;
-  g->call = *call;
-  g->state = vs_guest_next(call->foul);
-  g->stats.calls++;
-  vs_event event = vs_guest_event(call, g->game.time_s);
-  if (event.kind != VS_EVENT_NONE) g->game.last_event = event;
-  if (g->state == VS_GUEST_PLACING && g->placement.fd >= 0) send_placement(g);
-  if (g->state == VS_GUEST_PLAY) vs_control_restart(g->control);
+  if (vs_net_referee_tell(&g->referee, &p)) g->stats.placements++;
 }
 
 static void hear_referee(vs_guest *g) {
-  uint8_t bytes[VS_LEAGUE_RECEIVE_MAX];
-  size_t size;
-  vs_ref_command call;
-  while (vs_udp_receive(&g->referee, bytes, sizeof bytes, &size)) {
-    if (size > sizeof bytes || vs_ref_command_decode(bytes, size, &call, NULL) != VS_OK)
-      g->stats.garbage++;
-    else
-      hear(g, &call);
+  while (vs_net_referee_hear(&g->referee)) {
+    vs_event event = vs_net_event(&g->referee.call, g->game.time_s);
+    if (event.kind != VS_EVENT_NONE) g->game.last_event = event;
+    if (g->referee.state == VS_NET_PLACING && event.kind != VS_EVENT_NONE) send_placement(g);
+    if (g->referee.state == VS_NET_PLAY) vs_control_restart(g->control);
   }
+}
+
+void vs_guest_arm(vs_guest *g, bool go) {
+  if (go && g->word != VS_NET_GO) vs_control_restart(g->control);
+  g->word = go ? VS_NET_GO : VS_NET_STOP;
 }
 
 // The newest world that waits. What it leaves out keeps its place and is not valid.
@@ -171,7 +126,7 @@ static bool see(vs_guest *g, uint32_t *step) {
   bool seen = false;
   while (vs_udp_receive(&g->vision, bytes, sizeof bytes, &size)) {
     if (size > sizeof bytes || vs_fira_environment_decode(bytes, size, &e, NULL) != VS_OK) {
-      g->stats.garbage++;
+      g->unread++;
       continue;
     }
     for (int t = 0; t < VS_TEAMS; t++)
@@ -203,16 +158,18 @@ vs_status vs_guest_tick(vs_guest *g, vs_guest_tick_result *out, vs_error *err) {
   g->stats.worlds++;
   g->world.seq++;
   g->world.time_us = now_us;
-  if (g->state == VS_GUEST_PLAY) g->game.time_s = fmin(g->game.time_s + dt_s, g->game.duration_s);
-  bool decided = false;
-  if (g->state == VS_GUEST_PLAY) {
+  vs_net_task task = vs_net_task_of(g->referee.state, g->word);
+  bool plays = task == VS_NET_AT_PLAY, decided = false;
+  if (plays) g->game.time_s = fmin(g->game.time_s + dt_s, g->game.duration_s);
+  if (plays) {
     vs_status s = vs_control_step(g->control, g->def.team, &g->world, &g->game, dt_s, out->wheels, &decided, err);
     if (s != VS_OK) return s;
   }
   g->stats.decisions += decided ? 1 : 0;
+  bool released = g->word == VS_NET_GO || (g->word == VS_NET_UNSAID && g->referee.state != VS_NET_WAITING);
   vs_safety_input in = {.now_us = vs_clock_monotonic_us(),
-                        .armed = true, // by having started the program
-                        .referee = g->state == VS_GUEST_PLAY ? VS_EVENT_NONE : VS_EVENT_HALT,
+                        .armed = released,
+                        .referee = plays ? VS_EVENT_NONE : VS_EVENT_HALT,
                         .team = g->def.team,
                         .world = &g->world,
                         .command_us = now_us};
@@ -222,8 +179,12 @@ vs_status vs_guest_tick(vs_guest *g, vs_guest_tick_result *out, vs_error *err) {
   out->seen = true;
   out->world = g->world;
   out->game = g->game;
-  out->state = g->state;
+  out->state = g->referee.state;
   return VS_OK;
 }
 
-const vs_guest_stats *vs_guest_get_stats(const vs_guest *g) { return &g->stats; }
+const vs_guest_stats *vs_guest_get_stats(vs_guest *g) {
+  g->stats.calls = g->referee.heard;
+  g->stats.garbage = g->unread + g->referee.garbage;
+  return &g->stats;
+}

@@ -159,7 +159,7 @@ void vs_hosted_begin(vs_hosted *m) {
 
 void vs_hosted_hear(vs_hosted *m, const vs_ref_command *call) {
   if (m->def.mode != VS_REFEREE_EXTERNAL) return;
-  if (call->foul == m->call.foul && call->timestamp_s == m->call.timestamp_s) return; // one of ten
+  if (vs_ref_command_repeats(&m->call, call)) return;
   vs_phase phase = call->foul == VS_FOUL_GAME_ON                              ? VS_PHASE_PLAY
                    : call->foul == VS_FOUL_STOP || call->foul == VS_FOUL_HALT ? VS_PHASE_STOPPED
                                                                               : VS_PHASE_CALLED;

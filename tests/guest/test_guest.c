@@ -15,20 +15,21 @@ static int base;
 // A transition a row.
 static const struct {
   vs_ref_command call;
-  vs_guest_state state;
+  vs_net_state state;
   vs_event_kind event; // NONE: the last one stays
   bool drives, places;
 } rows[] = {
-    {{VS_FOUL_KICKOFF, VS_YELLOW, 0, 1, 1}, VS_GUEST_PLACING, VS_EVENT_KICK_OFF, false, true},
-    {{VS_FOUL_STOP, VS_YELLOW, 0, 1, 1}, VS_GUEST_STOPPED, VS_EVENT_NONE, false, false},
-    {{VS_FOUL_GAME_ON, -1, 0, 1, 1}, VS_GUEST_PLAY, VS_EVENT_NONE, true, false},
-    {{VS_FOUL_FREE_BALL, -1, 3, 2, 1}, VS_GUEST_PLACING, VS_EVENT_FREE_BALL, false, true},
-    {{VS_FOUL_GAME_ON, -1, 0, 3, 1}, VS_GUEST_PLAY, VS_EVENT_NONE, true, false},
-    {{VS_FOUL_PENALTY_KICK, VS_BLUE, 0, 4, 1}, VS_GUEST_PLACING, VS_EVENT_PENALTY, false, true},
-    {{VS_FOUL_STOP, VS_BLUE, 0, 4, 1}, VS_GUEST_STOPPED, VS_EVENT_NONE, false, false},
-    {{VS_FOUL_GOAL_KICK, VS_YELLOW, 4, 5, 1}, VS_GUEST_PLACING, VS_EVENT_GOAL_KICK, false, true},
-    {{VS_FOUL_GAME_ON, -1, 0, 6, 2}, VS_GUEST_PLAY, VS_EVENT_NONE, true, false},
-    {{VS_FOUL_HALT, -1, 0, 7, 2}, VS_GUEST_HALTED, VS_EVENT_HALT, false, false},
+    {{VS_FOUL_KICKOFF, VS_YELLOW, 0, 1, 1}, VS_NET_PLACING, VS_EVENT_KICK_OFF, false, true},
+    {{VS_FOUL_STOP, VS_YELLOW, 0, 1, 1}, VS_NET_STOPPED, VS_EVENT_NONE, false, false},
+    {{VS_FOUL_GAME_ON, -1, 0, 1, 1}, VS_NET_PLAY, VS_EVENT_NONE, true, false},
+    {{VS_FOUL_FREE_BALL, -1, 3, 2, 1}, VS_NET_PLACING, VS_EVENT_FREE_BALL, false, true},
+    {{VS_FOUL_GAME_ON, -1, 0, 3, 1}, VS_NET_PLAY, VS_EVENT_NONE, true, false},
+    {{VS_FOUL_PENALTY_KICK, VS_BLUE, 0, 4, 1}, VS_NET_PLACING, VS_EVENT_PENALTY, false, true},
+    {{VS_FOUL_STOP, VS_BLUE, 0, 4, 1}, VS_NET_STOPPED, VS_EVENT_NONE, false, false},
+    {{VS_FOUL_GOAL_KICK, VS_YELLOW, 4, 5, 1}, VS_NET_PLACING, VS_EVENT_GOAL_KICK, false, true},
+    {{VS_FOUL_GAME_ON, -1, 0, 6, 2}, VS_NET_PLAY, VS_EVENT_NONE, true, false},
+    {{VS_FOUL_HALT, -1, 0, 7, 2}, VS_NET_HALTED, VS_EVENT_HALT, false, false},
+    {{VS_FOUL_FREE_KICK, VS_BLUE, 0, 8, 2}, VS_NET_PLACING, VS_EVENT_NONE, false, false},
 };
 
 static vs_guest *open_guest(vs_team team, vs_udp *vision, vs_udp *referee, vs_udp *commands, vs_udp *placements) {
@@ -93,7 +94,9 @@ static void each_call_moves_the_team_through_the_table(void **state) {
     vs_guest *guest = open_guest((vs_team)team, &vision, &referee, &commands, &placements);
     vs_guest_tick_result tick;
     uint32_t step = 100;
-    assert_true(answer(guest, &vision, &commands, &step, (vs_team)team, &tick) > 1); // no referee yet: it plays
+    assert_near(answer(guest, &vision, &commands, &step, (vs_team)team, &tick), 0, 0); // nobody said go
+    assert_int_equal(tick.state, VS_NET_WAITING);
+    assert_int_equal(tick.safety, VS_SAFETY_UNARMED);
     assert_int_equal(tick.game.score[VS_BLUE], 3);
     vs_event_kind last = VS_EVENT_KICK_OFF;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
@@ -108,7 +111,7 @@ static void each_call_moves_the_team_through_the_table(void **state) {
       }
       fastest = answer(guest, &vision, &commands, &step, (vs_team)team, &tick);
       if (tick.state != rows[k].state)
-        fail_msg("row %zu: %s, expected %s", k, vs_guest_state_name(tick.state), vs_guest_state_name(rows[k].state));
+        fail_msg("row %zu: %s, expected %s", k, vs_net_state_name(tick.state), vs_net_state_name(rows[k].state));
       if (rows[k].event != VS_EVENT_NONE) last = rows[k].event;
       assert_int_equal(tick.game.last_event.kind, last);
       if (rows[k].drives ? !(fastest > 1) : fastest != 0) fail_msg("row %zu drives at %g rad/s", k, fastest);
@@ -129,9 +132,44 @@ static void each_call_moves_the_team_through_the_table(void **state) {
   }
 }
 
+// Without a call the operator's go plays. A call then goes before it, but his stop goes before every call.
+static void the_operator_plays_without_a_referee_and_stops_with_one(void **state) {
+  (void)state;
+  vs_udp vision, referee, commands, placements;
+  vs_guest *guest = open_guest(VS_BLUE, &vision, &referee, &commands, &placements);
+  vs_guest_tick_result tick;
+  uint32_t step = 100;
+  const vs_ref_command halt = {.foul = VS_FOUL_HALT, .team = -1}, game_on = {.foul = VS_FOUL_GAME_ON, .team = -1};
+  const struct {
+    int go; // -1: not said
+    const vs_ref_command *call;
+    bool drives;
+  } said[] = {{1, NULL, true},      {0, NULL, false}, {1, NULL, true},    {-1, &halt, false},    {1, NULL, false},
+              {-1, &game_on, true}, {0, NULL, false}, {-1, &halt, false}, {-1, &game_on, false}, {1, NULL, true}};
+  for (size_t k = 0; k < sizeof said / sizeof *said; k++) {
+    uint8_t bytes[512];
+    size_t size = said[k].call ? vs_ref_command_encode(said[k].call, bytes, sizeof bytes) : 0;
+    if (size) vs_udp_send(&referee, bytes, size);
+    if (said[k].go >= 0) vs_guest_arm(guest, said[k].go);
+    send_world(&vision, step += 16, 0.1); // answered as before where it was on its way
+    assert_ok(vs_guest_tick(guest, &tick, err));
+    while (vs_udp_receive(&commands, bytes, sizeof bytes, &size)) {
+    }
+    double fastest = answer(guest, &vision, &commands, &step, VS_BLUE, &tick);
+    if (said[k].drives ? !(fastest > 1) : fastest != 0) fail_msg("row %zu drives at %g rad/s", k, fastest);
+  }
+  assert_int_equal(vs_guest_get_stats(guest)->calls, 4);
+  vs_guest_free(guest);
+  vs_udp_close(&vision);
+  vs_udp_close(&referee);
+  vs_udp_close(&commands);
+  vs_udp_close(&placements);
+}
+
 int main(void) {
   base = 21000 + (int)(getpid() % 4000) * 8;
-  const struct CMUnitTest tests[] = {cmocka_unit_test(each_call_moves_the_team_through_the_table)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(each_call_moves_the_team_through_the_table),
+                                     cmocka_unit_test(the_operator_plays_without_a_referee_and_stops_with_one)};
   vs_error err = {0};
   if (vs_league_supported(&err) != VS_OK) {
     print_message("note: %s\n", err.text);
