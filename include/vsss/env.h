@@ -38,6 +38,9 @@ typedef struct vs_env_def {
   vs_predicts predicts;     // external teams count as learned
   bool shuffle_adversaries; // training
   vs_episode_def episode;   // training
+  // Its commands come at the moment they act, through a radio of its own: realism's latency and lost radio frames are the
+  // other team's alone. Such a team is external.
+  bool own_radio[VS_TEAMS];
 } vs_env_def;
 
 VSSS_API vs_env_def vs_env_def_default(const vs_model *model); // paper rules, paper noise, 120 s, both teams external

@@ -15,6 +15,10 @@
 extern "C" {
 #endif
 
+// From a picture to the wheels that answer to it, where `field` needs less than that for it: motors are told what came over
+// the air once a picture, at the next one's moment.
+#define VS_RIG_LATENCY_S (1.0 / VS_CAMERA_HZ)
+
 // What spoils the camera's pictures; all 0: nothing does.
 typedef struct vs_rig_optics {
   double noise;      // deviation, grey levels
@@ -35,6 +39,8 @@ typedef struct vs_rig_def {
   bool white_walls; // as LARC 2026 has them
   vs_rig_optics optics;
   int delay_frames;         // pictures by which the own robots act late, as slow electronics would: 0 to 10
+  bool opponent_at_once;    // the other team's commands act in the picture they answer to; else VS_RIG_LATENCY_S and
+                            // delay_frames later, at most 7 pictures, as the own team's do
   vs_mark own, their;       // what the teams wear: VS_MARK_APRIL, VS_MARK_PATCH
   int tag_id[VS_TEAM_SIZE]; // AprilTags of the own team; ArUco marks are the league's
   uint8_t radio_id[VS_TEAM_SIZE];

@@ -16,7 +16,7 @@ typedef struct options {
   double seconds;
   uint64_t seed;
   int matches, width, height, rt, delay;
-  bool no_lcm, help;
+  bool at_once, no_lcm, help;
 } options;
 
 static const char about[] =
@@ -59,6 +59,8 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
       {"exposure", VS_FLAG_REAL, &o->exposure_ms, "MS", "motion blur: five pictures within it are drawn as one", 0, 33},
       {"robot-delay", VS_FLAG_INT, &o->delay, "FRAMES", "by which the own robots act late, as slow electronics do", 0,
        10},
+      {"opponent-at-once", VS_FLAG_SWITCH, &o->at_once, NULL,
+       "the other team acts without delay; else it waits for its commands as long as the own one does", 0, 0},
       {"dir", VS_FLAG_TEXT, &o->folder, "DIR", "where camera, radio and calib.ini are put", 0, 0},
       {"config", VS_FLAG_TEXT, &o->config, "FILE", "a field.ini: its [radio] tells the robots' numbers and key", 0, 0},
       {"truth", VS_FLAG_TEXT, &o->truth, "FILE", "write the true world of every picture as CSV", 0, 0},
@@ -87,6 +89,7 @@ static vs_status fill(const options *o, const char *folder, vs_rig_def *def, vs_
   def->optics = o->optics;
   def->optics.exposure_s = 1e-3 * o->exposure_ms;
   def->delay_frames = o->delay;
+  def->opponent_at_once = o->at_once;
   def->width_px = o->width;
   def->height_px = o->height;
   def->folder = folder;

@@ -218,6 +218,8 @@ vs_status vs_env_frame(vs_env *env, vs_event *event, vs_error *err) {
 
   vs_wheels arrived[VS_TEAMS][VS_TEAM_SIZE];
   vs_sensors_command(&m->sensors, (const vs_wheels(*)[VS_TEAM_SIZE])m->wheels, arrived);
+  for (int t = 0; t < VS_TEAMS; t++)
+    if (env->def.own_radio[t]) memcpy(arrived[t], m->wheels[t], sizeof arrived[t]);
   s = vs_sim_frame(env->sim, (const vs_wheels(*)[VS_TEAM_SIZE])arrived, err);
   if (s != VS_OK) return fail_in_match(m, err);
   vs_sim_world(env->sim, &m->truth);

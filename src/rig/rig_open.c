@@ -26,11 +26,21 @@ vs_rig_def vs_rig_def_default(const vs_model *model) {
                       .lcm = true};
 }
 
+// The own team's delay is real: its radio's and, as on a field, the time it thinks. The other team has none of its own.
+static double opponent_latency_s(const vs_rig_def *def) {
+  if (def->opponent_at_once) return 0.0;
+  return fmin(VS_RIG_LATENCY_S + (double)def->delay_frames / VS_CAMERA_HZ,
+              (VS_SENSOR_DELAY_FRAMES - 1.0) / VS_CAMERA_HZ);
+}
+
 static vs_status open_match(vs_rig *r, vs_error *err) {
   vs_env_def def = vs_env_def_default(r->def.model);
   def.player[VS_BLUE] = r->def.team == VS_BLUE ? NULL : r->def.opponent;
   def.player[VS_YELLOW] = r->def.team == VS_YELLOW ? NULL : r->def.opponent;
   def.referee = r->def.referee;
+  def.own_radio[r->def.team] = true;
+  double latency_s = opponent_latency_s(&r->def);
+  def.realism.latency_s = (vs_range){latency_s, latency_s};
   vs_status s = vs_env_new(&def, &r->env, err);
   if (s == VS_OK) s = vs_env_reset(r->env, r->def.seed, err);
   if (s == VS_OK) vs_env_truth(r->env, &r->truth);

@@ -140,6 +140,44 @@ static void the_robots_obey_the_radio_and_report(void **state) {
   assert_int_not_equal(access(path, F_OK), 0);
 }
 
+// Frames from the kick-off until one of yellow's robots has moved; -1: none did.
+static int frames_until_yellow_moves(const char *flags) {
+  char arguments[256], truth[96], source[96];
+  snprintf(truth, sizeof truth, "%s/truth.csv", folder);
+  snprintf(source, sizeof source, "rig:%s/camera", venue);
+  snprintf(arguments, sizeof arguments, "--opponent random: --truth %s %s", truth, flags);
+  pid_t rig = start_rig(arguments);
+  if (!rig) return -1;
+  vs_camera *camera;
+  assert_ok(vs_camera_open(source, NULL, &camera, err));
+  vs_clock_sleep_until_us(vs_clock_monotonic_us() + 1500000);
+  vs_camera_close(camera);
+  kill(rig, SIGINT);
+  assert_int_equal(vsss_wait(rig, 20), 0);
+  static table t;
+  read_table(truth, &t);
+  int begin = 0;
+  while (begin < t.rows && !t.row[begin].event) begin++;
+  for (int i = begin + 1; i < t.rows; i++)
+    for (int k = 3; k < 6; k++) {
+      const struct row *now = &t.row[i], *then = &t.row[begin];
+      if (hypot(now->x_m[k] - then->x_m[k], now->y_m[k] - then->y_m[k]) > 5e-4 ||
+          fabs(now->theta_rad[k] - then->theta_rad[k]) > 5e-3)
+        return (int)lround(1e-6 * VS_CAMERA_HZ * (double)(now->time_us - then->time_us));
+    }
+  return -1;
+}
+
+// A late machine draws the kick-off some pictures late, so that fewer are counted.
+static void the_other_team_waits_for_its_commands_as_long_as_ours(void **state) {
+  (void)state;
+  int at_once = frames_until_yellow_moves("--opponent-at-once --robot-delay 6");
+  int late = frames_until_yellow_moves("--robot-delay 5"); // and the one that the radio takes: 6
+  print_message("moves after %d frames, delayed after %d\n", at_once, late);
+  assert_in_range(at_once, 1, 2);
+  assert_in_range(late, 4, 8);
+}
+
 static void write_text(const char *path, const char *text) {
   FILE *f = fopen(path, "w");
   assert_non_null(f);
@@ -313,6 +351,7 @@ int main(void) {
       cmocka_unit_test(the_camera_shows_the_kick_off_where_the_calibration_says),
       cmocka_unit_test(so_does_one_with_a_distorting_lens_and_a_slow_shutter),
       cmocka_unit_test(the_robots_obey_the_radio_and_report),
+      cmocka_unit_test(the_other_team_waits_for_its_commands_as_long_as_ours),
       cmocka_unit_test(files_that_no_rig_left_are_kept_and_named),
       cmocka_unit_test(planted_links_are_refused_and_what_they_point_at_is_kept),
       cmocka_unit_test(a_folder_that_is_not_only_the_users_is_refused),

@@ -270,6 +270,33 @@ static void the_clock_and_the_first_goal_end_an_episode_differently(void **state
   vs_env_free(env);
 }
 
+// 0.1 s of latency are three frames.
+static void a_team_with_a_radio_of_its_own_acts_at_once(void **state) {
+  (void)state;
+  vs_env_def def = vs_env_def_default(model);
+  def.realism.latency_s = (vs_range){0.1, 0.1};
+  def.own_radio[VS_YELLOW] = true;
+  vs_env *env;
+  assert_ok(vs_env_new(&def, &env, err));
+  assert_ok(vs_env_reset(env, 3, err));
+  const float ahead[VS_TEAM_SIZE * VS_ACTION_SIZE] = {1, 1, 1, 1, 1, 1};
+  vs_world start, now;
+  vs_env_truth(env, &start);
+  for (int t = 0; t < VS_TEAMS; t++) assert_ok(vs_env_set_action(env, (vs_team)t, ahead, err));
+  int moved_after[VS_TEAMS] = {0};
+  for (int frame = 1; frame <= 6; frame++) {
+    play_frames(env, 1);
+    vs_env_truth(env, &now);
+    for (int t = 0; t < VS_TEAMS; t++) {
+      const vs_pose *a = &start.robot[t][0].pose, *b = &now.robot[t][0].pose;
+      if (!moved_after[t] && hypot(b->x_m - a->x_m, b->y_m - a->y_m) > 5e-4) moved_after[t] = frame;
+    }
+  }
+  assert_int_equal(moved_after[VS_YELLOW], 1);
+  assert_int_equal(moved_after[VS_BLUE], 4);
+  vs_env_free(env);
+}
+
 static void a_snapshot_continues_bit_identically_here_and_elsewhere(void **state) {
   (void)state;
   vs_env_def def = vs_env_def_default(model);
@@ -408,6 +435,7 @@ int main(void) {
       cmocka_unit_test(a_goal_replaces_the_reward_and_restarts_play),
       cmocka_unit_test(two_defenders_and_the_ball_in_their_area_are_a_foul_of_theirs),
       cmocka_unit_test(the_clock_and_the_first_goal_end_an_episode_differently),
+      cmocka_unit_test(a_team_with_a_radio_of_its_own_acts_at_once),
       cmocka_unit_test(a_snapshot_continues_bit_identically_here_and_elsewhere),
       cmocka_unit_test(a_player_is_exchanged_at_the_next_reset),
       cmocka_unit_test(failures_name_seed_time_and_team),
