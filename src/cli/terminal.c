@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -26,6 +27,7 @@ void vs_cli_realtime(int priority) {
 
 bool vs_cli_begin(void) {
   signal(SIGPIPE, SIG_IGN);
+  setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); // what FFmpeg would write to standard error, our errors say
   const bool can_print = fcntl(STDOUT_FILENO, F_GETFD) >= 0;
   for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++) // opens the lowest that is free
     if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDWR) < 0) return false;

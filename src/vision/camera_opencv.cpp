@@ -1,7 +1,6 @@
 // OpenCV for pictures and videos: files to pixels and back. Table and units: opencv.h.
 #include "vision/opencv.h"
 
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -81,7 +80,6 @@ vs_status jpeg_decode(const uint8_t *jpeg, size_t size, uint8_t *bgr, int width,
 
 vs_status video_open(const char *path, vs_video **out, int *width, int *height, double *fps, vs_error *err) try {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); // our errors come as vs_error
-  setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
   auto video = std::make_unique<vs_video>();
   // FFmpeg only: the other backends look for cameras on every bus before they give up on a file.
   if (!video->capture.open(path, cv::CAP_FFMPEG))
