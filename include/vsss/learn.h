@@ -8,6 +8,7 @@
 
 #include "vsss/config.h"
 #include "vsss/reward.h"
+#include "vsss/sim.h"
 #include "vsss/status.h"
 
 #ifdef __cplusplus
@@ -97,10 +98,10 @@ typedef struct vs_train_score {
   double matches, win, draw, loss, goals_for, goals_against, score, score_low, score_high;
 } vs_train_score;
 
-// Matches of 120 s on the contact drive by the paper's rules: a policy file against any player. The same seed, the same
-// matches.
+// Matches of 120 s by the paper's rules: a policy file against any player. The same seed, the same matches.
 typedef struct vs_train_eval_def {
   const char *policy_file, *opponent;
+  vs_drive drive; // contact is the reference
   int matches, threads;
   uint64_t seed;
   bool (*go_on)(void *context); // may be NULL; false ends it: score.matches is then how many were played

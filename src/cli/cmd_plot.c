@@ -136,10 +136,26 @@ static void plot_opponents(FILE *out, const opponents *o, const char *values, co
   fprintf(out, "\n");
 }
 
+// Where the paper's learned team passed its opponents, in million transitions (three a time step: 14.98 and 23.54
+// million steps, section VIII), drawn where the run got that far.
+static void mark_the_paper(FILE *out) {
+  static const struct {
+    double transitions_m;
+    const char *text;
+  } crossings[] = {{45.0, "paper passes INF"}, {71.0, "paper passes EMC"}};
+  for (size_t i = 0; i < sizeof crossings / sizeof *crossings; i++)
+    fprintf(out,
+            "if (STATS_max >= %g) {\n  set arrow from %g, graph 0 to %g, graph 1 nohead dashtype 2 lc rgb 'gray40'\n"
+            "  set label '%s' at %g, graph 0.02 rotate by 90 offset 0.7,0 textcolor rgb 'gray40'\n}\n",
+            crossings[i].transitions_m, crossings[i].transitions_m, crossings[i].transitions_m, crossings[i].text,
+            crossings[i].transitions_m);
+}
+
 // Score and win rate against each opponent of the periodic evaluation, with the 95 % interval of the score.
 static void plot_eval(FILE *out, const opponents *o, const char *ending) {
   fprintf(out, "set output 'eval_score.%s'\nset title 'Score in matches'\nset ylabel 'goal difference per match'\n",
           ending);
+  mark_the_paper(out);
   plot_opponents(out, o, "(column('score')):(column('score_low')):(column('score_high'))", "yerrorlines");
   fprintf(out, "set output 'eval_win.%s'\nset title 'Matches won'\nset ylabel 'percent'\nset yrange [0:100]\n", ending);
   plot_opponents(out, o, "(100*column('win'))", "linespoints");
@@ -158,7 +174,8 @@ static bool has_rows(const char *folder, const char *name) {
 static void write_script(FILE *out, const measured *m, const opponents *o, bool svg) {
   const char *ending = svg ? "svg" : "png";
   fprintf(out,
-          "set terminal %s\nset datafile separator ','\nset key autotitle columnhead\nset datafile columnheaders\nset "
+          "set terminal %s\nset datafile separator ','\nset datafile missing NaN\nset key autotitle columnhead\nset "
+          "datafile columnheaders\nset "
           "grid\nset key outside "
           "below\nset xlabel 'million transitions'\n"
           "stats 'progress.csv' using (column('transitions')/1e6) nooutput\nbin = STATS_max/200\n",

@@ -21,9 +21,9 @@
 
 typedef struct options {
   const char *preset, *config, *run, *resume, *export, *slim, *untrained, *opponent, *reward, *reward_end, *realism,
-      *learner, *imitate, *eval_against, *seed;
+      *learner, *imitate, *eval_against, *eval_drive, *seed;
   int threads, imitate_updates, eval_matches;
-  double minutes, transitions_m, checkpoint_min, eval_min;
+  double minutes, transitions_m, checkpoint_min, eval_min, eval_m;
   bool league;
   vs_flag_list set;
 } options;
@@ -39,6 +39,8 @@ typedef struct session {
   vs_journal *journal;
   vs_train_report report;
   double start_s, checkpoint_s, eval_s, line_s;
+  double eval_transitions; // at which the last evaluation was
+  vs_drive eval_drive;
   char scores[256]; // of the last evaluation, for the policy's metadata
   vs_progress progress;
   pthread_mutex_t alive; // held while an interrupt uses what is here, and from the end on
@@ -148,6 +150,7 @@ static vs_status imitate(session *s, vs_error *err) {
 static vs_status evaluate_against(session *s, const char *opponent, const char *policy, vs_error *err) {
   const vs_train_eval_def def = {.policy_file = policy,
                                  .opponent = opponent,
+                                 .drive = s->eval_drive,
                                  .matches = s->opt->eval_matches,
                                  .threads = vs_train_settings(s->train)->threads,
                                  .seed = 1,
@@ -165,7 +168,7 @@ static vs_status evaluate_against(session *s, const char *opponent, const char *
   return vs_journal_add_eval(s->journal, &s->report, &eval, err);
 }
 
-// The policy as it is now against each of --eval-against, on the contact drive.
+// The policy as it is now against each of --eval-against, on --eval-drive.
 static vs_status evaluate(session *s, vs_error *err) {
   char policy[PATH_MAX], names[256];
   snprintf(policy, sizeof policy, "%s/policy.onnx", s->folder);
@@ -176,7 +179,14 @@ static vs_status evaluate(session *s, vs_error *err) {
   for (char *one; status == VS_OK && (one = strsep(&rest, ",")) != NULL;)
     if (*one) status = evaluate_against(s, one, policy, err);
   s->eval_s = now_s();
+  s->eval_transitions = s->report.transitions;
   return status;
+}
+
+static bool evaluation_is_due(const session *s) {
+  const options *o = s->opt;
+  return (o->eval_min > 0.0 && now_s() - s->eval_s >= 60.0 * o->eval_min) ||
+         (o->eval_m > 0.0 && s->report.transitions - s->eval_transitions >= 1e6 * o->eval_m);
 }
 
 // What rank 0 does after an update.
@@ -184,7 +194,7 @@ static vs_status record(session *s, vs_error *err) {
   vs_status status = vs_journal_add(s->journal, &s->report, err);
   if (status != VS_OK) return status;
   show(s);
-  if (s->opt->eval_min > 0.0 && now_s() - s->eval_s >= 60.0 * s->opt->eval_min) return evaluate(s, err);
+  if (evaluation_is_due(s)) return evaluate(s, err);
   return now_s() - s->checkpoint_s >= 60.0 * s->opt->checkpoint_min ? save(s, err) : VS_OK;
 }
 
@@ -217,6 +227,7 @@ static vs_status run(session *s, vs_error *err) {
   bool stop = vs_train_done(s->train) || vs_cli_interrupted();
   vs_status status = vs_group_any(s->group, &stop, err);
   s->start_s = s->checkpoint_s = s->eval_s = now_s();
+  s->eval_transitions = vs_train_transitions(s->train);
   vs_progress_start(&s->progress);
   while (status == VS_OK && !stop) {
     status = vs_train_update(s->train, &s->report, err);
@@ -287,6 +298,7 @@ static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
   vs_train_def def;
   vs_status status = vs_cli_await_interrupts(announce_stop, save_now, &s, err);
   if (status == VS_OK) status = settings(o, &def, err);
+  if (status == VS_OK) status = vs_drive_parse(o->eval_drive, &s.eval_drive, err);
   if (status == VS_OK) status = vs_group_open(&s.group, err);
   s.first = vs_group_rank(s.group) == 0;
   if (status == VS_OK) status = prepare(&s, &def, err);
@@ -323,6 +335,7 @@ int cmd_train(int argc, char **argv) {
                .checkpoint_min = 5.0,
                .imitate_updates = 40,
                .eval_against = "random:,inf:,emc:",
+               .eval_drive = "contact",
                .eval_matches = 20};
   const vs_flag flags[] = {
       {"preset", VS_FLAG_TEXT, &o.preset, "NAME", "default (our recipe) or paper (its Table 2)", 0, 0},
@@ -342,8 +355,10 @@ int cmd_train(int argc, char **argv) {
       {"minutes", VS_FLAG_REAL, &o.minutes, "MIN", "stop after; 0: no limit", 0, 1e6},
       {"transitions", VS_FLAG_REAL, &o.transitions_m, "MILLION", "stop at; 0: as set", 0, 1e9},
       {"checkpoint-every", VS_FLAG_REAL, &o.checkpoint_min, "MIN", "minutes between checkpoints", 0.001, 1e6},
-      {"eval-every", VS_FLAG_REAL, &o.eval_min, "MIN", "matches on the contact drive this often; 0: never", 0, 1e6},
+      {"eval-every", VS_FLAG_REAL, &o.eval_min, "MIN", "matches this often; 0: never", 0, 1e6},
+      {"eval-every-m", VS_FLAG_REAL, &o.eval_m, "MILLION", "... or after so many transitions", 0, 1e6},
       {"eval-against", VS_FLAG_TEXT, &o.eval_against, "URIS", "... against these players", 0, 0},
+      {"eval-drive", VS_FLAG_TEXT, &o.eval_drive, "NAME", "... on contact (the reference) or planar", 0, 0},
       {"eval-matches", VS_FLAG_INT, &o.eval_matches, "N", "... so many each", 1, 100000},
       {"run", VS_FLAG_TEXT, &o.run, "FOLDER", "a new run: checkpoint, policy.onnx, CSV, TensorBoard", 0, 0},
       {"resume", VS_FLAG_TEXT, &o.resume, "FOLDER", "continue this run; a checkpoint: begin --run with it", 0, 0},

@@ -1,4 +1,4 @@
-// Periodic evaluation of a run: the exported policy as anyone would play it, on the reference drive.
+// Periodic evaluation of a run: the exported policy as anyone would play it.
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -23,7 +23,7 @@ vs_status vs_train_evaluate(const vs_train_eval_def *def, vs_train_score *out, v
   char uri[512];
   if ((size_t)snprintf(uri, sizeof uri, "onnx:%s", def->policy_file) >= sizeof uri)
     return vs_fail(err, VS_FAIL, "%.300s: path too long", def->policy_file);
-  vs_model_def model_def = vs_model_def_default(VS_DRIVE_CONTACT);
+  vs_model_def model_def = vs_model_def_default(def->drive);
   vs_model *model = NULL;
   vs_status s = vs_model_load(&model_def, &model, err);
   if (s != VS_OK) return s;

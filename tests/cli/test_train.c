@@ -173,6 +173,14 @@ static void evaluation_is_written_beside_the_progress(void **state) {
   assert_true(exists("%s/e/eval_score.png"));
 }
 
+static void evaluation_after_so_many_transitions_on_the_drive_that_is_named(void **state) {
+  (void)state;
+  train("train --run %s/t " SMALL
+        "--transitions 0.0025 --eval-every-m 0.0009 --eval-against zero: --eval-matches 1 --eval-drive planar");
+  assert_int_equal(lines(content("%s/t/eval.csv")), 1 + 2); // after 4 and 8 updates of 288
+  assert_refused(with_folder("train --run %s/u " SMALL "--transitions 0.001 --eval-drive flat"), 2, "flat");
+}
+
 static void a_script_is_imitated_before_the_run(void **state) {
   (void)state;
   train("train --run %s/m " SMALL "--transitions 0.0003 --imitate zero: --imitate-updates 3 --opponent emc:");
@@ -298,6 +306,7 @@ int main(void) {
       cmocka_unit_test(a_checkpoint_that_is_done_trains_on_and_says_how_far),
       cmocka_unit_test(interrupting_a_run_saves_it),
       cmocka_unit_test(evaluation_is_written_beside_the_progress),
+      cmocka_unit_test(evaluation_after_so_many_transitions_on_the_drive_that_is_named),
       cmocka_unit_test(a_script_is_imitated_before_the_run),
       cmocka_unit_test(a_damaged_checkpoint_is_named_and_the_one_before_continues),
       cmocka_unit_test(wrong_settings_are_refused_with_the_allowed_range),
