@@ -45,7 +45,8 @@ typedef struct vs_field_def {
   vs_radio_key key;               // of our team on the air
   const vs_wire *wire;            // what the robots speak; NULL: our own protocol
   double camera_height_m;
-  double latency_s;   // mid-exposure to wheel: players are shown the world moved on by it (vs_control_set_latency); 0
+  double latency_s;   // mid-exposure to wheel: players are shown the world moved on by it (vs_control_set_latency)
+  bool latency_fixed; // else that is a first guess, until the robots' motion tells (latency_meter.h)
   double ball_hold_s; // a ball never seen, or not for longer, stops the robots; 0: they play on with its last place
   vs_camera_def camera_def;
   vs_detector_def detector;
@@ -83,6 +84,8 @@ typedef struct vs_field_stats {
   int64_t too_old;      // not decided on: older than VS_FIELD_MAX_AGE_US
   int64_t decisions;    // commands made
   int64_t missed_ticks; // decision periods that went by without one while frames came
+  double latency_s;     // what the player's world is moved on by now
+  bool latency_told;    // ... by the robots' motion
   int64_t bridged;      // missing frames that the prediction stood in for
   int64_t camera_lost, camera_reopened;
   int64_t player_failures; // wrong numbers, crashes, hangs; the robots stopped and the player was started anew

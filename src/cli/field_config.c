@@ -11,7 +11,7 @@
 #include "vsss/paths.h"
 #include "vsss/vision_config.h"
 
-enum { ROWS = 120, OWN_ROWS = 17 };
+enum { ROWS = 120, OWN_ROWS = 18 };
 
 // text NULL: what the file at path holds.
 static vs_status load(const char *path, const char *text, vs_field_config *c, vs_error *err) {
@@ -24,6 +24,7 @@ static vs_status load(const char *path, const char *text, vs_field_config *c, vs
       {"field.duration_s", VS_CONFIG_REAL, &d->duration_s, 0, 1, 86400, "of a match, until a referee says otherwise"},
       {"field.camera_height_m", VS_CONFIG_REAL, &d->camera_height_m, 0, 1, 5, "where there is no calibration"},
       {"field.latency_s", VS_CONFIG_REAL, &d->latency_s, 0, 0, VS_CONTROL_LATENCY_MAX_S, "mid-exposure to wheel"},
+      {"field.latency_fixed", VS_CONFIG_BOOL, &d->latency_fixed, 0, 0, 0, "else the robots' motion tells it"},
       {"field.ball_hold_s", VS_CONFIG_REAL, &d->ball_hold_s, 0, 0, 60, "a ball lost for longer stops; 0: never"},
       {"radio.device", VS_CONFIG_TEXT, c->radio, sizeof c->radio, 0, 0, "serial device; empty: a dry run"},
       {"radio.baud", VS_CONFIG_INT, &d->baud, 0, 1200, 4000000, "of the serial device"},

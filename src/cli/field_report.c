@@ -20,6 +20,8 @@ void vs_field_report_print(const vs_field_stats *s) {
   printf("%lld missing frames bridged; camera lost %lld times, back %lld times; player failed %lld times\n",
          (long long)s->bridged, (long long)s->camera_lost, (long long)s->camera_reopened,
          (long long)s->player_failures);
+  printf("mid-exposure to wheel: %.0f ms, %s\n", ms(1e6 * s->latency_s),
+         s->latency_told ? "as the robots' motion told" : "as given: the robots' motion did not tell");
   printf("stopped:");
   for (int i = 0; i < VS_SAFETY_STATES; i++)
     if (s->entered[i] && i != VS_SAFETY_RUNNING)
@@ -42,6 +44,7 @@ vs_status vs_field_report_json(const char *path, const vs_field_stats *s, vs_err
           (long long)s->dropped, (long long)s->too_old);
   fprintf(f, "  \"decisions\": %lld,\n  \"missed_ticks\": %lld,\n  \"referee_events\": %lld,\n",
           (long long)s->decisions, (long long)s->missed_ticks, (long long)s->events);
+  fprintf(f, "  \"latency_s\": %.4f,\n  \"latency_told\": %s,\n", s->latency_s, s->latency_told ? "true" : "false");
   fprintf(f, "  \"bridged\": %lld,\n  \"camera_lost\": %lld,\n  \"camera_reopened\": %lld,\n", (long long)s->bridged,
           (long long)s->camera_lost, (long long)s->camera_reopened);
   fprintf(f, "  \"player_failures\": %lld,\n  \"entered\": {", (long long)s->player_failures);

@@ -9,6 +9,7 @@
 #include "tap.h"
 #include "vsss/control.h"
 #include "vsss/field_loop.h"
+#include "vsss/latency_meter.h"
 #include "vsss/sender.h"
 
 struct vs_field {
@@ -18,11 +19,12 @@ struct vs_field {
   vs_detector *detector;
   vs_moved moved; // whether the camera did
   vs_tracker tracker;
-  vs_control *control[2]; // the policy's and the fallback's (NULL: none)
-  int plays;              // which of them
-  bool armed, rearm;      // the operator lets the robots move; and just said so again
-  bool mindless;          // it failed and has not decided since
-  vs_sender *sender;      // NULL: a run computed again
+  vs_latency_meter *meter; // NULL: the latency is told
+  vs_control *control[2];  // the policy's and the fallback's (NULL: none)
+  int plays;               // which of them
+  bool armed, rearm;       // the operator lets the robots move; and just said so again
+  bool mindless;           // it failed and has not decided since
+  vs_sender *sender;       // NULL: a run computed again
   vs_tap tap;
   vs_record record;
   vs_tick tick;   // what this turn was given so far; computed again: what it is given

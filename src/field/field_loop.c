@@ -13,6 +13,13 @@ void vs_field_send(vs_field *f, const vs_wheels wheels[VS_TEAM_SIZE], bool stop,
   if (f->sender) vs_sender_command(f->sender, wheels, stop, moment_us, now);
 }
 
+// moment_us: of the world that the wheels answer to.
+static void command(vs_field *f, int64_t moment_us, const vs_field_tick_result *r) {
+  static const vs_wheels still[VS_TEAM_SIZE] = {{0}};
+  vs_field_send(f, r->wheels, r->stop, moment_us, r->decided || r->stop);
+  if (f->meter) vs_latency_meter_sent(f->meter, moment_us, r->stop ? still : r->wheels);
+}
+
 static void say(vs_field *f, vs_field_tick_result *r, const char *format, const char *what) {
   snprintf(f->said, sizeof f->said, format, what);
   r->said = f->said;
@@ -60,6 +67,15 @@ static void decide(vs_field *f, vs_field_tick_result *r) {
   vs_control_restart(f->control[f->plays]);
 }
 
+// What the robots made of their commands tells how late these act.
+static void measure_latency(vs_field *f, const vs_world *world) {
+  double latency_s;
+  if (!f->meter || !vs_latency_meter_see(f->meter, world, &latency_s)) return;
+  f->stats.latency_s = latency_s;
+  f->stats.latency_told = true;
+  for (int i = 0; i < 2 && f->control[i]; i++) vs_control_set_latency(f->control[i], latency_s, NULL);
+}
+
 // Takes a frame in; false: it cannot be read, its camera was given up.
 bool vs_field_see(vs_field *f, const vs_frame *frame, vs_field_tick_result *r) {
   vs_field_count_frame(f, frame);
@@ -75,6 +91,7 @@ bool vs_field_see(vs_field *f, const vs_frame *frame, vs_field_tick_result *r) {
   vs_field_hear(f, frame->capture_us);
   vs_track_update(&f->tracker, &f->calib, &f->seen);
   vs_track_world(&f->tracker, 0, &r->world);
+  measure_latency(f, &r->world);
   vs_field_mark(f, VS_STAGE_TRACK);
   return true;
 }
@@ -102,7 +119,7 @@ static void play(vs_field *f, const vs_frame *frame, vs_field_tick_result *r) {
   decide(f, r);
   vs_field_mark(f, VS_STAGE_CONTROL);
   judge(f, frame->capture_us, r);
-  vs_field_send(f, r->wheels, r->stop, frame->capture_us, r->decided || r->stop);
+  command(f, frame->capture_us, r);
   vs_field_mark(f, VS_STAGE_WRITE);
   r->age_us = f->mark_us - frame->capture_us;
   if (r->decided) {
@@ -138,7 +155,7 @@ static void play_blind(vs_field *f, vs_field_tick_result *r) {
     if (r->decided) vs_field_count_decision(f, next_us);
   }
   judge(f, f->step_us, r);
-  if (r->bridged || r->stop) vs_field_send(f, r->wheels, r->stop, f->step_us, r->decided || r->stop);
+  if (r->bridged || r->stop) command(f, f->step_us, r);
   if (r->bridged || r->stop) publish(f, NULL, r);
   publish_slowly(f);
 }

@@ -16,6 +16,7 @@ vs_field_def vs_field_def_default(void) {
                         .baud = VS_SERIAL_BAUD,
                         .radio_id = {0, 1, 2},
                         .camera_height_m = 2.2,
+                        .latency_s = 0.05,
                         .ball_hold_s = 3,
                         .camera_def = vs_camera_def_default(),
                         .detector = vs_detector_def_default(),
@@ -90,6 +91,8 @@ vs_status vs_field_new(const vs_field_def *def, vs_field **out, char *note, size
   // Before anything starts a thread: the players' processes are forked from here.
   vs_status s = open_brain(f, def->policy, &f->control[0], err);
   if (s == VS_OK && def->fallback) s = open_brain(f, def->fallback, &f->control[1], err);
+  f->stats.latency_s = def->latency_s;
+  if (s == VS_OK && !def->latency_fixed) s = vs_latency_meter_new(def->team, &f->meter, err);
   vs_sender_def radio = {.device = def->radio, .baud = def->baud, .key = def->key, .wire = def->wire};
   memcpy(radio.id, def->radio_id, sizeof radio.id);
   if (s == VS_OK && !def->rerun) s = vs_sender_new(&radio, &f->sender, err);
@@ -113,6 +116,7 @@ void vs_field_free(vs_field *f) {
   vs_record_close(&f->record);
   vs_detector_free(f->detector);
   for (int i = 0; i < 2; i++) vs_control_free(f->control[i]);
+  vs_latency_meter_free(f->meter);
   vs_moved_close(&f->moved);
   vs_eyes_close(&f->eyes);
   free(f);
