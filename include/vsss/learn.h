@@ -176,6 +176,11 @@ vs_status vs_train_keep(vs_train *train, vs_error *err);
 vs_status vs_train_save_kept(vs_train *train, const char *path, double *update, vs_error *err);
 vs_status vs_train_read_def(const char *path, vs_train_def *out, vs_error *err);
 vs_status vs_train_load(vs_train *train, const char *path, char *note, vs_error *err);
+// Between vs_train_load and the first update: networks and moments become the mean of the run's own and those of count
+// checkpoints of networks of the same shape. Points of one run, or of runs that began from one point, lie in one basin,
+// and their mean plays better than each (Izmailov et al. 2018, arXiv 1803.05407). The scale of values stays the run's. On
+// failure the run is as it was.
+vs_status vs_train_average(vs_train *train, const char *const *paths, int count, vs_error *err);
 
 // The present policy as ONNX; notes in pairs (key, value), ended by NULL, are added to its metadata.
 vs_status vs_train_export(const vs_train *train, const char *path, bool with_spread, const char *const *notes,

@@ -25,7 +25,7 @@ typedef struct options {
   int threads, imitate_updates, eval_matches;
   double minutes, transitions_m, checkpoint_min, eval_min, eval_m;
   bool league;
-  vs_flag_list set;
+  vs_flag_list set, average;
 } options;
 
 typedef struct session {
@@ -277,6 +277,7 @@ static vs_status prepare(session *s, const vs_train_def *def, vs_error *err) {
     checkpoint_to_resume(s->opt, path, sizeof path);
     status = vs_train_load(s->train, path, note, err);
     if (status == VS_OK && note[0]) printf("%s\n", note);
+    if (status == VS_OK) status = vs_train_average(s->train, s->opt->average.value, s->opt->average.count, err);
     if (status == VS_OK) raise_limit(s);
   }
   if (status == VS_OK && s->first) status = vs_run_folder_note(s->folder, s->command, vs_cli_commit, err);
@@ -293,6 +294,8 @@ static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
   static session s; // an interrupt may look at it until the very end
   s = (session){.opt = o, .alive = PTHREAD_MUTEX_INITIALIZER};
   s.continued = o->resume && !resumes_file(o);
+  if (o->average.count && !resumes_file(o))
+    return vs_fail(err, VS_USAGE, "--average begins a new run: give --resume CHECKPOINT too, and --run FOLDER");
   snprintf(s.folder, sizeof s.folder, "%s", s.continued ? o->resume : o->run);
   vs_run_folder_command(argc, argv, s.command, sizeof s.command);
   vs_train_def def;
@@ -362,6 +365,7 @@ int cmd_train(int argc, char **argv) {
       {"eval-matches", VS_FLAG_INT, &o.eval_matches, "N", "... so many each", 1, 100000},
       {"run", VS_FLAG_TEXT, &o.run, "FOLDER", "a new run: checkpoint, policy.onnx, CSV, TensorBoard", 0, 0},
       {"resume", VS_FLAG_TEXT, &o.resume, "FOLDER", "continue this run; a checkpoint: begin --run with it", 0, 0},
+      {"average", VS_FLAG_LIST, &o.average, "CHECKPOINT", "... with the mean of that one's networks and these", 0, 0},
       {"export", VS_FLAG_TEXT, &o.export, "FILE", "write the policy here too", 0, 0},
       {"slim", VS_FLAG_TEXT, &o.slim, "FILE", "a small checkpoint too, the networks alone", 0, 0},
       {"write-untrained", VS_FLAG_TEXT, &o.untrained, "FILE", "write a policy nobody trained as ONNX and stop", 0, 0},

@@ -241,15 +241,55 @@ static vs_status load(vs_train *t, const vs_bytes *archive, const char *path, vs
   return VS_OK;
 }
 
+// The archive at path (or the one before it) on every rank of the run's group.
+static vs_status read_on_all(vs_train *train, const char *path, vs_bytes *archive, char *used, size_t used_size,
+                             char *note, vs_error *err) {
+  vs_status s = VS_OK;
+  snprintf(used, used_size, "%s", path);
+  if (note) note[0] = '\0';
+  if (vs_group_rank(train->group) == 0) s = read_either(path, archive, used, used_size, note, err);
+  return train->group ? share_archive(train->group, s, archive, err) : s;
+}
+
 vs_status vs_train_load(vs_train *train, const char *path, char *note, vs_error *err) {
   vs_bytes archive = {0};
   char used[PATH_MAX];
-  vs_status s = VS_OK;
-  snprintf(used, sizeof used, "%s", path);
-  if (note) note[0] = '\0';
-  if (vs_group_rank(train->group) == 0) s = read_either(path, &archive, used, sizeof used, note, err);
-  if (train->group) s = share_archive(train->group, s, &archive, err);
+  vs_status s = read_on_all(train, path, &archive, used, sizeof used, note, err);
   if (s == VS_OK) s = load(train, &archive, used, err);
   vs_bytes_free(&archive);
+  return s;
+}
+
+// One checkpoint's networks and moments, added to sum: [3][net.size], as the sections stand below.
+static vs_status add_up(vs_train *train, const char *path, float *scratch, double *sum, vs_error *err) {
+  vs_bytes archive = {0};
+  char used[PATH_MAX];
+  const size_t size = train->learner.net.size;
+  vs_status s = read_on_all(train, path, &archive, used, sizeof used, NULL, err);
+  if (s == VS_OK) s = check_contract(&archive, used, err);
+  const vs_section *const sections[] = {&parameters_section, &m_section, &v_section};
+  for (int k = 0; s == VS_OK && k < 3; k++) {
+    s = load_floats(&archive, used, sections[k], scratch, size, err);
+    for (size_t i = 0; s == VS_OK && i < size; i++) sum[(size_t)k * size + i] += (double)scratch[i];
+  }
+  vs_bytes_free(&archive);
+  return s;
+}
+
+vs_status vs_train_average(vs_train *train, const char *const *paths, int count, vs_error *err) {
+  if (count == 0) return VS_OK;
+  vs_learner *l = &train->learner;
+  const size_t size = l->net.size;
+  float *own[] = {l->parameters, l->m, l->v};
+  double *sum = calloc(3 * size, sizeof *sum);
+  float *scratch = calloc(size, sizeof *scratch);
+  vs_status s = sum && scratch ? VS_OK : vs_fail(err, VS_FAIL, "out of memory for the mean of checkpoints");
+  for (int i = 0; s == VS_OK && i < count; i++) s = add_up(train, paths[i], scratch, sum, err);
+  for (int k = 0; s == VS_OK && k < 3; k++)
+    for (size_t i = 0; i < size; i++)
+      own[k][i] = (float)((sum[(size_t)k * size + i] + (double)own[k][i]) / (count + 1));
+  free(sum);
+  free(scratch);
+  if (s == VS_OK && !train->started) vs_train_hand_over(train);
   return s;
 }

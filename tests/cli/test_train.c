@@ -91,6 +91,22 @@ static void a_small_checkpoint_begins_a_new_run(void **state) {
   assert_int_equal(lines(content("%s/b/progress.csv")), 1 + 4); // the old one is as it was
 }
 
+// The mean of two ages is another start than the later one.
+static void a_run_begins_with_the_mean_of_checkpoints(void **state) {
+  (void)state;
+  train("train --run %s/old " SMALL "--transitions 0.0003 --slim %s/young");
+  train("train --resume %s/old --transitions 0.001 --slim %s/grown");
+  train("train --run %s/w1 --resume %s/grown --transitions 0.0015");
+  char alone[4096], average[512];
+  snprintf(alone, sizeof alone, "%s", outcome("%s/w1/progress.csv"));
+  snprintf(average, sizeof average, "train --run %s/w2 --resume %s/grown --average %s/young --transitions 0.0015",
+           folder, folder, folder);
+  vsss(&run, average);
+  assert_int_equal(run.status, 0);
+  assert_true(strcmp(alone, outcome("%s/w2/progress.csv")) != 0);
+  assert_refused(with_folder("train --resume %s/old --average %s/young"), 2, "--average begins a new run");
+}
+
 // Every kind of player: what it remembers is part of the checkpoint.
 static void a_run_against_any_player_continues(void **state) {
   (void)state;
@@ -301,6 +317,7 @@ int main(void) {
       cmocka_unit_test(a_run_leaves_checkpoint_policy_tables_and_continues),
       cmocka_unit_test(two_runs_of_one_seed_are_the_same),
       cmocka_unit_test(a_small_checkpoint_begins_a_new_run),
+      cmocka_unit_test(a_run_begins_with_the_mean_of_checkpoints),
       cmocka_unit_test(a_run_against_any_player_continues),
       cmocka_unit_test(any_file_name_and_any_seed_survive_a_resume),
       cmocka_unit_test(a_checkpoint_that_is_done_trains_on_and_says_how_far),

@@ -77,6 +77,37 @@ static void a_resumed_run_continues_bit_for_bit(void **state) {
   vs_train_free(second);
 }
 
+// Checkpoints of one run at two ages: the mean of both, number for number, also for the policy that plays; the run then
+// goes on from it. A file that does not fit changes nothing.
+static void a_run_goes_on_from_the_mean_of_checkpoints(void **state) {
+  (void)state;
+  vs_train_def def = tiny_def();
+  char older[112];
+  snprintf(older, sizeof older, "%s/older", folder);
+  vs_train *run = open_tiny(&def), *mean = open_tiny(&def);
+  updates(run, 2);
+  assert_ok(vs_train_save_slim(run, older, err));
+  size_t size = run->learner.net.size;
+  float *before = malloc(size * sizeof *before);
+  memcpy(before, run->learner.parameters, size * sizeof *before);
+  updates(run, 3);
+  assert_ok(vs_train_save_slim(run, file, err));
+  assert_ok(vs_train_load(mean, file, NULL, err));
+  const char *const one[] = {older}, *const bad[] = {older, "/nowhere/at/all"};
+  vs_error err = {0};
+  assert_int_equal(vs_train_average(mean, bad, 2, &err), VS_FAIL);
+  assert_non_null(strstr(err.text, "/nowhere/at/all"));
+  assert_memory_equal(mean->learner.parameters, run->learner.parameters, size * sizeof *before);
+  assert_ok(vs_train_average(mean, one, 1, err));
+  for (size_t i = 0; i < size; i++)
+    assert_near(mean->learner.parameters[i], 0.5 * ((double)before[i] + (double)run->learner.parameters[i]), 1e-6);
+  assert_memory_equal(mean->league.self[0].parameters, mean->actor, mean->league.size * sizeof(float));
+  updates(mean, 1);
+  free(before);
+  vs_train_free(run);
+  vs_train_free(mean);
+}
+
 static void read_bytes(const char *path, char **data, size_t *size) {
   FILE *f = fopen(path, "rb");
   assert_non_null(f);
@@ -394,6 +425,7 @@ static int tear_down(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_resumed_run_continues_bit_for_bit),
+      cmocka_unit_test(a_run_goes_on_from_the_mean_of_checkpoints),
       cmocka_unit_test(a_damaged_checkpoint_falls_back_to_the_one_before_and_says_so),
       cmocka_unit_test(a_checkpoint_of_other_settings_is_refused),
       cmocka_unit_test(a_run_older_than_the_precision_goes_on_in_fp32),
