@@ -1,6 +1,6 @@
 // A venue that a test holds in its hands: a camera under which three robots stand still, a radio behind which one of them
 // obeys, and `vsss field` between them. Faults are made here; how long the robot takes to brake and to drive is read off
-// its firmware.
+// its firmware. Or the pictures are those of a rig behind, and its robots hear what is heard here.
 #ifndef VSSS_TESTS_CLI_FIELD_VENUE_H
 #define VSSS_TESTS_CLI_FIELD_VENUE_H
 
@@ -17,6 +17,8 @@
 typedef struct venue {
   char folder[64], camera_path[96], radio_path[96], log_path[96];
   pid_t field;
+  vs_camera *rig_camera; // whose pictures are passed on; NULL: the one below
+  vs_serial *rig_radio;
   vs_frame_server *camera; // NULL: unplugged
   vs_pty *radio;           // NULL: unplugged
   uint8_t picture[3 * PICTURE_W * PICTURE_H];
@@ -57,19 +59,43 @@ static inline void unplug_radio(venue *v) {
   v->radio = NULL;
 }
 
+static inline bool is_lost(venue *v, uint32_t seq) { return v->drop < 0 ? seq % 2 : vs_rng_uniform(&v->rng) < v->drop; }
+
+static inline void pass_picture_on(venue *v) {
+  vs_frame frame;
+  vs_camera_got got;
+  if (vs_camera_read(v->rig_camera, 0, &frame, &got, NULL) != VS_OK || got != VS_CAMERA_FRAME) return;
+  for (int i = 0; i < PICTURE_W * PICTURE_H; i++) { // blue, green, red to red, green, blue
+    v->picture[3 * i] = frame.bgr[3 * i + 2];
+    v->picture[3 * i + 1] = frame.bgr[3 * i + 1];
+    v->picture[3 * i + 2] = frame.bgr[3 * i];
+  }
+  if (v->camera && !is_lost(v, frame.seq)) vs_frame_server_put(v->camera, v->picture, frame.capture_us, frame.seq);
+}
+
 static inline void show_picture(venue *v, int64_t now_us) {
+  if (v->rig_camera) {
+    pass_picture_on(v);
+    return;
+  }
   if (now_us < v->next_us) return;
   v->next_us += 33333;
   if (v->next_us < now_us) v->next_us = now_us + 33333;
   uint32_t seq = v->seq++;
-  bool lost = v->drop < 0 ? seq % 2 : vs_rng_uniform(&v->rng) < v->drop;
-  if (v->camera && !lost) vs_frame_server_put(v->camera, v->picture, now_us, seq);
+  if (v->camera && !is_lost(v, seq)) vs_frame_server_put(v->camera, v->picture, now_us, seq);
 }
 
 static inline void listen_to_radio(venue *v) {
   uint8_t bytes[1024];
   size_t n = v->radio ? vs_pty_read(v->radio, bytes, sizeof bytes) : 0;
   static const uint8_t noise[] = {0x55, 0xAA, 0x13, 0x7F, 0x01};
+  if (v->rig_radio) {
+    uint8_t back[256];
+    int64_t now_us = vs_clock_monotonic_us();
+    if (n) vs_serial_write(v->rig_radio, bytes, n < 96 ? n : 96, now_us);
+    size_t said = vs_serial_read(v->rig_radio, back, sizeof back, now_us);
+    if (said && v->radio) vs_pty_write(v->radio, back, said);
+  }
   if (n && v->garbage) vs_firmware_receive(&v->robot, noise, sizeof noise, venue_ms());
   vs_firmware_receive(&v->robot, bytes, n, venue_ms());
   for (size_t i = 0; i < n; i++) {
@@ -126,7 +152,8 @@ static inline void start_field(venue *v, const char *flags) {
   v->field = vsss_start(v->log_path, arguments);
 }
 
-static inline venue *open_venue(const char *folder, const char *flags) {
+// Without a field in it yet.
+static inline venue *make_venue_in(const char *folder) {
   static venue venue_;
   venue *v = &venue_;
   memset(v, 0, sizeof *v);
@@ -140,6 +167,11 @@ static inline venue *open_venue(const char *folder, const char *flags) {
   v->drives.brake = true;
   plug_camera(v);
   plug_radio(v);
+  return v;
+}
+
+static inline venue *open_venue(const char *folder, const char *flags) {
+  venue *v = make_venue_in(folder);
   start_field(v, flags);
   return v;
 }
