@@ -67,7 +67,7 @@ typedef struct vs_series_summary {
   int matches; // played
   vs_estimate win, draw, loss, goals_for, goals_against;
   vs_estimate score; // paper (17): (goals for - goals against) / matches
-  double penalties_for, penalties_against, free_balls, goal_kicks;
+  double penalties_for, penalties_against, free_balls, goal_kicks, free_kicks;
   double idle_warnings[VS_TEAMS], idle_sent_off[VS_TEAMS];
   double penalty_goals_for, penalty_goals_against, free_ball_goals_for, free_ball_goals_against;
   double still_share; // of the time played

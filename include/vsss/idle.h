@@ -1,9 +1,12 @@
+// Stable: part of libvsss (deploy/docs/library.md).
+//
 // The idle rule (LARC 2026): a robot that stands still or spins on the spot for more than 10 s is warned; warned twice in
 // a row, it is sent off until the half ends. A team's keeper may stand while the ball is outside its area. Counted for
-// matches under any rules; here nobody is taken off the field.
+// matches under any rules; who is off is told, the field is the caller's.
 #ifndef VSSS_IDLE_H
 #define VSSS_IDLE_H
 
+#include "vsss/api.h"
 #include "vsss/world.h"
 
 #ifdef __cplusplus
@@ -24,7 +27,7 @@ typedef struct vs_idle {
 } vs_idle;
 
 // One frame of play: the true world before any placement, and what the referee said after it.
-void vs_idle_step(vs_idle *idle, const vs_world *world, const vs_event *event, double dt_s);
+VSSS_API void vs_idle_step(vs_idle *idle, const vs_world *world, const vs_event *event, double dt_s);
 
 #ifdef __cplusplus
 }

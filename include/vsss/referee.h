@@ -4,12 +4,14 @@
 //
 // Sets of rules, each a table: the paper's (section V: goal, penalty, free ball) and the league's (the automatic
 // referee of the simulation league, VSSSLeague/VSSReferee, tag LARC2022: also goal kicks, areas judged play by play).
-// Two more follow the texts for real robots, Serie A 2023 and LARC 2026, as far as positions show it.
+// Two more follow the texts for real robots, Serie A 2023 and LARC 2026, as far as positions show it; with LARC's the idle rule
+// is enforced (idle.h).
 // The league's pauses between whistle and restart are left out: a restart happens at once.
 #ifndef VSSS_REFEREE_H
 #define VSSS_REFEREE_H
 
 #include "vsss/api.h"
+#include "vsss/idle.h"
 #include "vsss/rng.h"
 #include "vsss/world.h"
 
@@ -22,13 +24,18 @@ typedef enum vs_placement_mode { VS_PLACEMENT_PAPER, VS_PLACEMENT_RANDOM } vs_pl
 
 // Paper: a ball that has not moved 2 cm for 10 s. League: a ball slower than 0.1 m/s for 5 s, a foul in an area for 3 s,
 // a robot's centre within 1.5 robots of 7.5 cm counts as being at the ball.
-#define VS_STILL_DISTANCE_M     0.02
-#define VS_STILL_S              10.0
-#define VS_LEAGUE_STUCK_MPS     0.1
-#define VS_LEAGUE_STUCK_S       5.0
-#define VS_LEAGUE_FOUL_S        3.0
-#define VS_LEAGUE_NEAR_BALL_M   (1.5 * 0.075)
-#define VS_SERIE_A_PATIENCE_S   10.0 // Serie A, LARC: stalemates, and how long a keeper may hold the ball
+#define VS_STILL_DISTANCE_M   0.02
+#define VS_STILL_S            10.0
+#define VS_LEAGUE_STUCK_MPS   0.1
+#define VS_LEAGUE_STUCK_S     5.0
+#define VS_LEAGUE_FOUL_S      3.0
+#define VS_LEAGUE_NEAR_BALL_M (1.5 * 0.075)
+#define VS_SERIE_A_PATIENCE_S 10.0 // Serie A, LARC: stalemates, and how long a keeper may hold the ball
+// Serie A, LARC: pushing without the ball. The texts name no numbers; ours: a robot moves one of the other team that it touches
+// before it, both faster than VS_PUSH_MPS that way and farther than VS_PUSH_BALL_M from the ball, for VS_PUSH_S.
+#define VS_PUSH_MPS             0.1
+#define VS_PUSH_BALL_M          0.20
+#define VS_PUSH_S               1.0
 #define VS_LEAGUE_GOAL_KICK_X_M 0.60
 #define VS_LEAGUE_GOAL_KICK_Y_M 0.35
 
@@ -62,7 +69,9 @@ typedef struct vs_referee {
   // Serie A and LARC: for how long the ball there has been uncontested, contested, and when a second defender, a second
   // attacker interfered.
   double defence_s, attack_s, defence_seen_s, attack_seen_s;
-  int free_balls; // in a row
+  int free_balls;          // in a row
+  double push_s[VS_TEAMS]; // for how long the team has been pushing
+  vs_idle idle;            // LARC
 } vs_referee;
 
 // game.last_event is then the first KICK_OFF, which wants vs_place. VS_USAGE: a number out of range.
@@ -70,10 +79,13 @@ VSSS_API vs_status vs_referee_init(vs_referee *referee, const vs_referee_def *de
 // Whether a copy, of a match of this def, can be gone on from: false for numbers that no match has, as in a damaged file.
 VSSS_API bool vs_referee_ok(const vs_referee *referee, const vs_referee_def *def);
 // Time goes on by dt_s and the true world is judged. Returns what happened (VS_EVENT_NONE mostly); game is up to date.
-// GOAL, PENALTY, FREE_BALL, GOAL_KICK and HALF_TIME want vs_place and vs_referee_restarted, unless the match is over.
+// GOAL, PENALTY, FREE_BALL, FREE_KICK, GOAL_KICK and HALF_TIME want vs_place and vs_referee_restarted, unless the match is over.
 // It is over after END (time is up) and after a GOAL that ends it (first goal of an episode, goal difference, or time
 // up in the same frame: no END follows then). A match that is over returns NONE.
+// SENT_OFF: see vs_referee_off.
 VSSS_API vs_event vs_referee_step(vs_referee *referee, const vs_world *world, double dt_s);
+// Who is off until the half ends: to be put beside the field (vs_world_beside) and left out of restarts.
+VSSS_API bool vs_referee_off(const vs_referee *referee, vs_team team, int robot);
 // After a placement: the clocks of stillness and of fouls start anew.
 VSSS_API void vs_referee_restarted(vs_referee *referee, const vs_world *world);
 
@@ -83,6 +95,10 @@ VSSS_API void vs_referee_restarted(vs_referee *referee, const vs_world *world);
 // the rules allow, roles and headings random. Events without a placement (NONE, END, HALT) give before itself.
 VSSS_API void vs_place(vs_placement_mode mode, const vs_event *event, const vs_world *before, vs_rng *rng,
                        vs_world *out);
+
+// Puts those that are off beside the field. The others of their team move up: the last one takes the place of a missing keeper
+// (robot 0) or taker (robot 1).
+VSSS_API void vs_place_without(const vs_referee *referee, vs_world *placed);
 
 // Whether a team may stand like this at that restart: inside the field, on nobody and not on the ball's place, where the
 // rules let it, and with the robot that the restart needs (taker, keeper on its line). Absolute frame. VS_FAIL says which

@@ -74,6 +74,8 @@ VSSS_API void
 vs_sim_reset(vs_sim *sim, const vs_sim_params *params /* NULL: default */); // time 0, everything at rest, kick-off line
 // Puts robots and ball where world says, robots at rest, wheels stopped, the ball rolling as fast as world says. Time goes on. No allocation, under 50 us.
 VSSS_API void vs_sim_place(vs_sim *sim, const vs_world *world);
+// Puts one robot at rest beside the field, where it touches no wall (vs_world_beside); nothing else changes.
+VSSS_API void vs_sim_put_beside(vs_sim *sim, vs_team team, int robot);
 // One frame (1/30 s, or the model's) with the commands held. VS_FAIL: MuJoCo reported a warning (NaN, too many contacts), by name.
 VSSS_API vs_status vs_sim_frame(vs_sim *sim, const vs_wheels command[VS_TEAMS][VS_TEAM_SIZE], vs_error *err);
 VSSS_API void vs_sim_world(const vs_sim *sim, vs_world *out); // the truth

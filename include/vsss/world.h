@@ -67,6 +67,8 @@ typedef enum vs_event_kind {
   VS_EVENT_HALF_TIME,
   VS_EVENT_END,
   VS_EVENT_HALT, // from outside: everybody stands still
+  VS_EVENT_FREE_KICK,
+  VS_EVENT_SENT_OFF, // a robot of team leaves the field; play goes on
   VS_EVENT_KINDS
 } vs_event_kind;
 
@@ -94,6 +96,11 @@ VSSS_API void vs_game_for_team(const vs_game *absolute, vs_team team, vs_game *v
 // Where a robot that nobody has seen yet is taken to stand (absolute frame): in a corner of its own half beside its goal
 // area, out of play and inside what a policy knows. A team that plays alone meets nobody there.
 VSSS_API vs_pose vs_world_parked(vs_team team, int robot);
+
+// Where a robot that was sent off stands: beside the field, out of everybody's reach (absolute frame). The simulator lets no
+// wall touch a robot that is further than VS_BESIDE_M from the field.
+#define VS_BESIDE_M 0.25
+VSSS_API vs_pose vs_world_beside(vs_team team, int robot);
 
 // All numbers finite and within 1 m outside the field; names the first that is not.
 VSSS_API vs_status vs_world_check(const vs_world *world, vs_error *err);

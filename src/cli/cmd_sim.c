@@ -205,9 +205,13 @@ static void print_match(const sim_command *c, double wall_s) {
   printf("%-12s %10d %10d\n", "goals", r->score[VS_BLUE], r->score[VS_YELLOW]);
   printf("%-12s %10d %10d\n", "penalties", r->events[VS_BLUE][VS_EVENT_PENALTY],
          r->events[VS_YELLOW][VS_EVENT_PENALTY]);
-  if (!strcmp(c->match.rules, "league"))
+  vs_rules rules = c->env.referee.rules;
+  if (rules != VS_RULES_PAPER)
     printf("%-12s %10d %10d\n", "goal kicks", r->events[VS_BLUE][VS_EVENT_GOAL_KICK],
            r->events[VS_YELLOW][VS_EVENT_GOAL_KICK]);
+  if (rules == VS_RULES_SERIE_A_2023 || rules == VS_RULES_LARC_2026)
+    printf("%-12s %10d %10d\n", "free kicks", r->events[VS_BLUE][VS_EVENT_FREE_KICK],
+           r->events[VS_YELLOW][VS_EVENT_FREE_KICK]);
   printf("%-12s %10d\n", "free balls",
          r->events[VS_BLUE][VS_EVENT_FREE_BALL] + r->events[VS_YELLOW][VS_EVENT_FREE_BALL]);
   for (int t = 0; t < VS_TEAMS; t++) vs_report_idle(stdout, name_of(c, t), r->idle_warnings[t], r->idle_sent_off[t]);

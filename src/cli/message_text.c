@@ -29,8 +29,10 @@ void vs_event_text(const vs_event *event, char *out, size_t size) {
   add(&t, "%s", vs_event_name(event->kind));
   if (event->kind == VS_EVENT_GOAL)
     add(&t, " by %s", vs_team_name(event->team));
-  else if (event->kind == VS_EVENT_PENALTY || event->kind == VS_EVENT_KICK_OFF)
+  else if (event->kind == VS_EVENT_PENALTY || event->kind == VS_EVENT_KICK_OFF || event->kind == VS_EVENT_FREE_KICK)
     add(&t, " for %s", vs_team_name(event->team));
+  else if (event->kind == VS_EVENT_SENT_OFF)
+    add(&t, ": a robot of %s, for standing idle", vs_team_name(event->team));
   else if (event->kind == VS_EVENT_GOAL_KICK)
     add(&t, " for %s in quadrant %d", vs_team_name(event->team), event->quadrant);
   else if (event->kind == VS_EVENT_FREE_BALL && event->quadrant == 0)

@@ -93,7 +93,7 @@ typedef struct plain {
   double value;
 } plain;
 
-enum { PLAINS = 14 };
+enum { PLAINS = 15 };
 static void plains_of(const vs_series_summary *s, plain out[PLAINS]) {
   const plain all[PLAINS] = {{"penalties_for", s->penalties_for},
                              {"penalties_against", s->penalties_against},
@@ -108,7 +108,8 @@ static void plains_of(const vs_series_summary *s, plain out[PLAINS]) {
                              {"penalty_goals_against", s->penalty_goals_against},
                              {"free_ball_goals_for", s->free_ball_goals_for},
                              {"free_ball_goals_against", s->free_ball_goals_against},
-                             {"still_share", s->still_share}};
+                             {"still_share", s->still_share},
+                             {"free_kicks", s->free_kicks}};
   memcpy(out, all, sizeof all);
 }
 
@@ -173,10 +174,11 @@ void vs_report_json_match(FILE *out, const vs_match_result *m) {
   json_number(out, "time_s", m->time_s);
   fprintf(out, ", \"finished\": %s, \"score\": [%d, %d]", m->played ? "true" : "false", m->score[VS_BLUE],
           m->score[VS_YELLOW]);
-  fprintf(out, ", \"penalties\": [%d, %d], \"free_balls\": %d, \"goal_kicks\": [%d, %d]",
+  fprintf(out, ", \"penalties\": [%d, %d], \"free_balls\": %d, \"goal_kicks\": [%d, %d], \"free_kicks\": [%d, %d]",
           m->events[VS_BLUE][VS_EVENT_PENALTY], m->events[VS_YELLOW][VS_EVENT_PENALTY],
           m->events[VS_BLUE][VS_EVENT_FREE_BALL] + m->events[VS_YELLOW][VS_EVENT_FREE_BALL],
-          m->events[VS_BLUE][VS_EVENT_GOAL_KICK], m->events[VS_YELLOW][VS_EVENT_GOAL_KICK]);
+          m->events[VS_BLUE][VS_EVENT_GOAL_KICK], m->events[VS_YELLOW][VS_EVENT_GOAL_KICK],
+          m->events[VS_BLUE][VS_EVENT_FREE_KICK], m->events[VS_YELLOW][VS_EVENT_FREE_KICK]);
   fprintf(out, ", \"idle_warnings\": [%d, %d], \"idle_sent_off\": [%d, %d]}", m->idle_warnings[VS_BLUE],
           m->idle_warnings[VS_YELLOW], m->idle_sent_off[VS_BLUE], m->idle_sent_off[VS_YELLOW]);
 }

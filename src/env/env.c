@@ -98,6 +98,10 @@ static vs_status fail_in_match(const match *m, vs_error *err) {
 static void measure(vs_env *env) {
   match *m = &env->m;
   vs_sensors_measure(&m->sensors, &m->truth, &m->measured);
+  for (int t = 0; t < VS_TEAMS; t++)
+    for (int i = 0; i < VS_TEAM_SIZE; i++)
+      if (vs_referee_off(&m->referee, (vs_team)t, i))
+        m->measured.robot[t][i] = (vs_robot){.pose = vs_world_parked((vs_team)t, i)};
   if (m->tick % FRAMES_PER_DECISION != 0 && !m->referee.over) return;
   for (int t = 0; t < VS_TEAMS; t++)
     if (!vs_control_player(env->control[t]))
@@ -121,6 +125,7 @@ static void place(vs_env *env, const vs_event *event) {
   match *m = &env->m;
   vs_world placed = m->truth;
   vs_place(m->referee.def.placement, event, &m->truth, &m->placement, &placed);
+  vs_place_without(&m->referee, &placed);
   put(env, &placed);
 }
 
@@ -207,7 +212,23 @@ static vs_status decide(vs_env *env, vs_error *err) {
 
 static bool wants_placement(vs_event_kind kind) {
   return kind == VS_EVENT_KICK_OFF || kind == VS_EVENT_GOAL || kind == VS_EVENT_PENALTY || kind == VS_EVENT_FREE_BALL ||
-         kind == VS_EVENT_GOAL_KICK || kind == VS_EVENT_HALF_TIME;
+         kind == VS_EVENT_GOAL_KICK || kind == VS_EVENT_FREE_KICK || kind == VS_EVENT_HALF_TIME;
+}
+
+// Robots that are off stand still beside the field, whatever their team commands.
+static void send_off(vs_env *env, const vs_event *said) {
+  match *m = &env->m;
+  if (said->kind != VS_EVENT_SENT_OFF) return;
+  for (int t = 0; t < VS_TEAMS; t++)
+    for (int i = 0; i < VS_TEAM_SIZE; i++)
+      if (vs_referee_off(&m->referee, (vs_team)t, i)) vs_sim_put_beside(env->sim, (vs_team)t, i);
+  vs_sim_world(env->sim, &m->truth);
+}
+
+static void hold_off(const vs_referee *referee, vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE]) {
+  for (int t = 0; t < VS_TEAMS; t++)
+    for (int i = 0; i < VS_TEAM_SIZE; i++)
+      if (vs_referee_off(referee, (vs_team)t, i)) wheels[t][i] = (vs_wheels){0, 0};
 }
 
 vs_status vs_env_frame(vs_env *env, vs_event *event, vs_error *err) {
@@ -220,6 +241,7 @@ vs_status vs_env_frame(vs_env *env, vs_event *event, vs_error *err) {
   vs_sensors_command(&m->sensors, (const vs_wheels(*)[VS_TEAM_SIZE])m->wheels, arrived);
   for (int t = 0; t < VS_TEAMS; t++)
     if (env->def.own_radio[t]) memcpy(arrived[t], m->wheels[t], sizeof arrived[t]);
+  hold_off(&m->referee, arrived);
   s = vs_sim_frame(env->sim, (const vs_wheels(*)[VS_TEAM_SIZE])arrived, err);
   if (s != VS_OK) return fail_in_match(m, err);
   vs_sim_world(env->sim, &m->truth);
@@ -229,6 +251,7 @@ vs_status vs_env_frame(vs_env *env, vs_event *event, vs_error *err) {
 
   vs_event said = vs_referee_step(&m->referee, &m->truth, FRAME_S);
   if (!m->referee.over && wants_placement(said.kind)) place(env, &said);
+  send_off(env, &said);
   measure(env);
   if (event) *event = said;
   return VS_OK;

@@ -17,7 +17,7 @@ void vs_match_count(vs_match_result *result, const vs_event *event) {
   }
   bool kick_off = event->kind == VS_EVENT_GOAL || event->kind == VS_EVENT_HALF_TIME;
   if (!kick_off && event->kind != VS_EVENT_PENALTY && event->kind != VS_EVENT_FREE_BALL &&
-      event->kind != VS_EVENT_GOAL_KICK)
+      event->kind != VS_EVENT_GOAL_KICK && event->kind != VS_EVENT_FREE_KICK)
     return;
   result->set_play = kick_off ? VS_EVENT_KICK_OFF : event->kind;
   result->set_play_s = event->time_s;

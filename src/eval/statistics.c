@@ -87,6 +87,8 @@ static void sum_up_played(const vs_match_result *const *played, int n, double *s
       mean_events(played, n, VS_BLUE, VS_EVENT_FREE_BALL) + mean_events(played, n, VS_YELLOW, VS_EVENT_FREE_BALL);
   out->goal_kicks =
       mean_events(played, n, VS_BLUE, VS_EVENT_GOAL_KICK) + mean_events(played, n, VS_YELLOW, VS_EVENT_GOAL_KICK);
+  out->free_kicks =
+      mean_events(played, n, VS_BLUE, VS_EVENT_FREE_KICK) + mean_events(played, n, VS_YELLOW, VS_EVENT_FREE_KICK);
   out->penalty_goals_for = mean_goals_from(played, n, VS_BLUE, VS_EVENT_PENALTY);
   out->penalty_goals_against = mean_goals_from(played, n, VS_YELLOW, VS_EVENT_PENALTY);
   out->free_ball_goals_for = mean_goals_from(played, n, VS_BLUE, VS_EVENT_FREE_BALL);

@@ -7,7 +7,7 @@
 
 // The restarts as the pieces see them.
 typedef struct restart {
-  vs_event_kind kind; // KICK_OFF, PENALTY, FREE_BALL or GOAL_KICK; NONE: open play
+  vs_event_kind kind; // KICK_OFF, PENALTY, FREE_BALL, FREE_KICK or GOAL_KICK; NONE: open play
   vs_team kicker;
   double ball_x_m, ball_y_m;
   bool in_the_middle; // a free ball again: robots stand in their own half, outside the circle
@@ -22,7 +22,8 @@ static bool restart_of(const vs_event *event, restart *r) {
   case VS_EVENT_GOAL: *r = (restart){.kind = VS_EVENT_KICK_OFF, .kicker = vs_other_team(event->team)}; return true;
   case VS_EVENT_HALF_TIME: r->kind = VS_EVENT_KICK_OFF; return true;
   case VS_EVENT_KICK_OFF: return true;
-  case VS_EVENT_PENALTY: r->ball_x_m = VS_PENALTY_MARK_X_M; return true;
+  case VS_EVENT_PENALTY:
+  case VS_EVENT_FREE_KICK: r->ball_x_m = VS_PENALTY_MARK_X_M; return true;
   case VS_EVENT_FREE_BALL:
     r->kicker = VS_BLUE; // nobody's: the absolute frame
     r->in_the_middle = quadrant == 0;
@@ -49,6 +50,13 @@ static const vs_pose kick_off_pose[VS_TEAMS][VS_TEAM_SIZE] = {
 static const vs_pose penalty_pose[VS_TEAMS][VS_TEAM_SIZE] = {
     {{-0.65, 0, 0}, {0.3, 0, 0}, {-0.1, 0.4, 0}},
     {{KEEPER_ON_LINE_M, 0, VS_PI}, {-0.1, 0.25, VS_PI}, {-0.1, -0.4, VS_PI}},
+};
+// Of the receivers one in each quadrant touches its area's line from before.
+#define AREA_LINE_M (VS_FIELD_HALF_LENGTH_M - VS_AREA_DEPTH_M)
+#define AT_LINE_M   (AREA_LINE_M - VS_ROBOT_SIZE_M / 2)
+static const vs_pose free_kick_pose[VS_TEAMS][VS_TEAM_SIZE] = {
+    {{-0.675, 0, 0}, {0.3, 0, 0}, {-0.1, 0.4, 0}},
+    {{KEEPER_ON_LINE_M, 0, VS_PI}, {AT_LINE_M, 0.2, VS_PI}, {AT_LINE_M, -0.2, VS_PI}},
 };
 static const vs_pose goal_kick_pose[VS_TEAMS][VS_TEAM_SIZE] = {
     {{-0.675, 0.27, VS_PI / 4}, {-0.45, 0.32, 0}, {-0.3, -0.47, 0}},
@@ -82,6 +90,7 @@ static void free_ball_poses(const restart *r, vs_pose pose[VS_TEAMS][VS_TEAM_SIZ
 
 static void fixed_poses(const restart *r, vs_pose pose[VS_TEAMS][VS_TEAM_SIZE]) {
   const vs_pose(*table)[VS_TEAM_SIZE] = r->kind == VS_EVENT_PENALTY     ? penalty_pose
+                                        : r->kind == VS_EVENT_FREE_KICK ? free_kick_pose
                                         : r->kind == VS_EVENT_GOAL_KICK ? goal_kick_pose
                                                                         : kick_off_pose;
   if (r->kind == VS_EVENT_FREE_BALL) {
@@ -112,6 +121,9 @@ static bool rules_allow(const restart *r, int t, double x_m, double y_m, double 
   case VS_EVENT_FREE_BALL: // out of the ball's quadrant; again: as at a kick-off, but for both teams outside the circle
     if (r->in_the_middle) return (t == 0 ? -1 : 1) * x_m >= clear_m && hypot(x_m, y_m) >= VS_CIRCLE_RADIUS_M + clear_m;
     return x_side * x_m <= -clear_m || y_side * y_m <= -clear_m;
+  case VS_EVENT_FREE_KICK: // not past the ball; receivers in touch with their area's line
+    if (t == 0) return x_m <= r->ball_x_m - clear_m;
+    return fabs(x_m - AREA_LINE_M) <= VS_ROBOT_SIZE_M / 2 + fmax(-clear_m, 0) && fabs(y_m) <= VS_AREA_HALF_WIDTH_M;
   case VS_EVENT_GOAL_KICK: // out of the kicker's area
     return x_m >= area_x_m + clear_m || fabs(y_m) >= VS_AREA_HALF_WIDTH_M + clear_m;
   default: // kick-off: own half, receivers outside the circle
@@ -126,10 +138,12 @@ static bool draw_task(const restart *r, int t, vs_rng *rng, vs_pose *pose) {
     return false;
   } else if (r->kind == VS_EVENT_FREE_BALL) {
     *pose = (vs_pose){r->ball_x_m + (t == 0 ? -1 : 1) * VS_FREE_BALL_ROBOT_M, r->ball_y_m, 0};
-  } else if (r->kind == VS_EVENT_PENALTY && t == 0) { // behind the ball, 10 to 30 cm away
+  } else if ((r->kind == VS_EVENT_PENALTY || r->kind == VS_EVENT_FREE_KICK) &&
+             t == 0) { // behind the ball, 10 to 30 cm away
     double angle = vs_rng_range(rng, -VS_PI / 3, VS_PI / 3), distance = vs_rng_range(rng, 0.1, 0.3);
     *pose = (vs_pose){r->ball_x_m - distance * cos(angle), distance * sin(angle), 0};
-  } else if (r->kind == VS_EVENT_PENALTY) { // touches its line, within the goal's mouth
+  } else if (r->kind == VS_EVENT_PENALTY ||
+             r->kind == VS_EVENT_FREE_KICK) { // touches its line, within the goal's mouth
     double room_m = VS_GOAL_HALF_WIDTH_M - ROBOT_CLEAR_M;
     *pose = (vs_pose){KEEPER_ON_LINE_M, vs_rng_range(rng, -room_m, room_m), 0};
   } else if (r->kind == VS_EVENT_GOAL_KICK && t == 0) { // in its area
@@ -144,7 +158,7 @@ static bool draw_task(const restart *r, int t, vs_rng *rng, vs_pose *pose) {
 static vs_pose draw_anywhere(const restart *r, int t, vs_rng *rng) {
   const double x_free_m = VS_FIELD_HALF_LENGTH_M - ROBOT_CLEAR_M, y_free_m = VS_FIELD_HALF_WIDTH_M - ROBOT_CLEAR_M;
   const double corner_m = VS_FIELD_HALF_LENGTH_M + VS_FIELD_HALF_WIDTH_M - VS_CORNER_M - ROOT_2 * ROBOT_CLEAR_M;
-  for (;;) { // at least a third of the field is allowed in every case
+  for (;;) { // at least a third of the field is allowed in every case but at a free kick, where it is a twentieth
     double x_m = vs_rng_range(rng, -x_free_m, x_free_m), y_m = vs_rng_range(rng, -y_free_m, y_free_m);
     if (fabs(x_m) + fabs(y_m) <= corner_m && rules_allow(r, t, x_m, y_m, ROBOT_CLEAR_M)) return (vs_pose){x_m, y_m, 0};
   }
@@ -170,6 +184,7 @@ static void random_poses(const restart *r, vs_rng *rng, vs_pose pose[VS_TEAMS][V
       vs_pose *p = &pose[t][robot[t][i]];
       do {
         if (i > 0 || !draw_task(r, t, rng, p)) *p = draw_anywhere(r, t, rng);
+        if (r->kind == VS_EVENT_FREE_KICK && t == 1 && i > 0) p->y_m = i == 1 ? fabs(p->y_m) : -fabs(p->y_m);
       } while (!is_clear(r, placed, n, p));
       p->theta_rad = vs_wrap_rad(vs_rng_range(rng, -VS_PI, VS_PI));
       placed[n++] = p;
@@ -241,6 +256,23 @@ void vs_place(vs_placement_mode mode, const vs_event *event, const vs_world *bef
   vs_world_for_team(&view, r.kicker, out);
 }
 
+void vs_place_without(const vs_referee *referee, vs_world *placed) {
+  for (int t = 0; t < VS_TEAMS; t++) {
+    vs_robot *robot = placed->robot[t];
+    bool moved[VS_TEAM_SIZE] = {false};
+    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+      if (!vs_referee_off(referee, (vs_team)t, i)) continue;
+      for (int k = VS_TEAM_SIZE - 1; k > i; k--) {
+        if (vs_referee_off(referee, (vs_team)t, k) || moved[k]) continue;
+        robot[k] = robot[i];
+        moved[k] = true;
+        break;
+      }
+      robot[i] = (vs_robot){.pose = vs_world_beside((vs_team)t, i), .valid = true};
+    }
+  }
+}
+
 // --- what teams place themselves ---------------------------------------------------------------------------------------
 
 #define NEAR_M 0.03 // of a point that the rules name
@@ -252,6 +284,7 @@ static bool has_task(const restart *r, int t, const vs_pose *p) {
   case VS_EVENT_FREE_BALL:
     return vs_distance_m(p->x_m, p->y_m, r->ball_x_m + (t == 0 ? -1 : 1) * VS_FREE_BALL_ROBOT_M, r->ball_y_m) <= NEAR_M;
   case VS_EVENT_PENALTY:
+  case VS_EVENT_FREE_KICK:
     if (t == 0) return p->x_m < r->ball_x_m && vs_distance_m(p->x_m, p->y_m, r->ball_x_m, r->ball_y_m) <= 0.3 + NEAR_M;
     return p->x_m >= KEEPER_ON_LINE_M - NEAR_M && fabs(p->y_m) <= VS_GOAL_HALF_WIDTH_M;
   case VS_EVENT_GOAL_KICK:
@@ -262,14 +295,14 @@ static bool has_task(const restart *r, int t, const vs_pose *p) {
 
 static bool task_is_due(const restart *r, int t) {
   if (r->in_the_middle) return false;
-  return r->kind == VS_EVENT_FREE_BALL || r->kind == VS_EVENT_PENALTY || t == 0;
+  return r->kind == VS_EVENT_FREE_BALL || r->kind == VS_EVENT_PENALTY || t == 0; // a free kick's keeper is free
 }
 
 // A keeper in its own area may stay where it is.
 static bool keeps(const restart *r, int t, const vs_pose *p) {
   double own = t == 0 ? -1 : 1;
   bool in_area = own * p->x_m >= VS_FIELD_HALF_LENGTH_M - VS_AREA_DEPTH_M && fabs(p->y_m) <= VS_AREA_HALF_WIDTH_M;
-  return r->kind == VS_EVENT_FREE_BALL && in_area;
+  return (r->kind == VS_EVENT_FREE_BALL || (r->kind == VS_EVENT_FREE_KICK && t == 1)) && in_area;
 }
 
 static vs_status check_spot(const vs_pose *p, int i, const restart *r, vs_error *err) {
@@ -285,7 +318,7 @@ static vs_status check_spot(const vs_pose *p, int i, const restart *r, vs_error 
 vs_status vs_placement_check(const vs_event *event, vs_team team, const vs_pose pose[VS_TEAM_SIZE], vs_error *err) {
   restart r;
   if (!restart_of(event, &r)) return vs_fail(err, VS_FAIL, "a %s places nothing", vs_event_name(event->kind));
-  int t = team == r.kicker ? 0 : 1, tasks = 0, keepers = 0;
+  int t = team == r.kicker ? 0 : 1, tasks = 0, keepers = 0, at_line[2] = {0, 0};
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     vs_pose p = r.kicker == VS_YELLOW ? vs_pose_rotate_pi(pose[i]) : pose[i];
     vs_status s = check_spot(&p, i, &r, err);
@@ -300,6 +333,8 @@ vs_status vs_placement_check(const vs_event *event, vs_team team, const vs_pose 
     else if (!rules_allow(&r, t, p.x_m, p.y_m, -0.001))
       return vs_fail(err, VS_FAIL, "robot %d at %.3f, %.3f m is where a %s allows none", i, pose[i].x_m, pose[i].y_m,
                      vs_event_name(event->kind));
+    else if (r.kind == VS_EVENT_FREE_KICK && t == 1 && at_line[p.y_m > 0]++ > 0)
+      return vs_fail(err, VS_FAIL, "robot %d is the second of its quadrant at a free kick", i);
   }
   if (task_is_due(&r, t) && tasks == 0)
     return vs_fail(err, VS_FAIL, "no robot stands where the %s wants one", vs_event_name(event->kind));

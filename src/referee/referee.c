@@ -48,6 +48,7 @@ static void forget(vs_referee *r) {
   r->play_area = -1;
   r->defence_s = r->attack_s = 0;
   r->defence_seen_s = r->attack_seen_s = -1;
+  r->push_s[VS_BLUE] = r->push_s[VS_YELLOW] = 0;
 }
 
 vs_status vs_referee_init(vs_referee *referee, const vs_referee_def *def, vs_error *err) {
@@ -72,6 +73,16 @@ static bool game_ok(const vs_game *g) {
          e->quadrant <= 4;
 }
 
+static bool idle_ok(const vs_idle *idle) {
+  bool ok = true;
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
+    int t = i / VS_TEAM_SIZE, k = i % VS_TEAM_SIZE;
+    ok = ok && vs_all_finite(&idle->robot[t][k].x_m, 3) && vs_are_bools(&idle->robot[t][k].warned, 2);
+  }
+  for (int t = 0; t < VS_TEAMS; t++) ok = ok && idle->warnings[t] >= 0 && idle->sent_off[t] >= 0;
+  return ok;
+}
+
 bool vs_referee_ok(const vs_referee *r, const vs_referee_def *def) {
   const vs_referee_def *d = &r->def;
   bool same = d->rules == def->rules && d->placement == def->placement && d->duration_s == def->duration_s &&
@@ -80,7 +91,8 @@ bool vs_referee_ok(const vs_referee *r, const vs_referee_def *def) {
               vs_all_finite(&d->still_s, 1) && d->still_s > 0; // an episode draws these two
   return same && game_ok(&r->game) && vs_are_bools(&r->over, 1) && is_team(r->kick_off) && r->half >= 0 &&
          r->half <= 1 && vs_all_finite(&r->still_x_m, 3) && r->play_area >= -1 && r->play_area < VS_TEAMS &&
-         vs_all_finite(&r->defence_s, 4) && r->free_balls >= 0;
+         vs_all_finite(&r->defence_s, 4) && r->free_balls >= 0 && vs_all_finite(r->push_s, VS_TEAMS) &&
+         idle_ok(&r->idle);
 }
 
 void vs_referee_restarted(vs_referee *referee, const vs_world *world) {
@@ -115,7 +127,7 @@ static void facts_of(const vs_world *world, double dt_s, vs_facts *f) {
   const vs_ball *ball = &world->ball;
   const double line_m = VS_FIELD_HALF_LENGTH_M + VS_BALL_RADIUS_M;
   bool over_line = fabs(ball->x_m) > line_m, in_mouth = fabs(ball->y_m) < VS_GOAL_HALF_WIDTH_M;
-  *f = (vs_facts){.dt_s = dt_s, .scorer = -1, .area = -1, .ended_play = -1};
+  *f = (vs_facts){.dt_s = dt_s, .scorer = -1, .area = -1, .ended_play = -1, .pusher = -1};
   if (over_line && in_mouth) f->scorer = ball->x_m > 0 ? VS_BLUE : VS_YELLOW;
   f->ball_out = (over_line && !in_mouth) || fabs(ball->y_m) > VS_FIELD_HALF_WIDTH_M + VS_BALL_RADIUS_M;
   f->quadrant = ball->x_m >= 0 ? (ball->y_m >= 0 ? 1 : 4) : (ball->y_m >= 0 ? 2 : 3);
@@ -170,6 +182,20 @@ static void announce(vs_referee *r, const vs_event *event, double dt_s) {
   forget(r);
 }
 
+// The idle rule stops no play.
+static void send_off(vs_referee *r, const vs_world *world, vs_event *event, double dt_s) {
+  int before[VS_TEAMS] = {r->idle.sent_off[VS_BLUE], r->idle.sent_off[VS_YELLOW]};
+  vs_idle_step(&r->idle, world, event, dt_s);
+  for (int t = 0; t < VS_TEAMS; t++) {
+    if (event->kind != VS_EVENT_NONE || r->idle.sent_off[t] == before[t]) continue;
+    event->kind = VS_EVENT_SENT_OFF;
+    event->team = (vs_team)t;
+    r->game.last_event = *event;
+  }
+}
+
+bool vs_referee_off(const vs_referee *r, vs_team team, int robot) { return r->idle.robot[team][robot].off; }
+
 vs_event vs_referee_step(vs_referee *referee, const vs_world *world, double dt_s) {
   vs_event event = {.kind = VS_EVENT_NONE};
   if (referee->over) return event;
@@ -189,6 +215,7 @@ vs_event vs_referee_step(vs_referee *referee, const vs_world *world, double dt_s
     announce(referee, &event, dt_s);
     break;
   }
+  if (referee->def.rules == VS_RULES_LARC_2026 && !referee->over) send_off(referee, world, &event, dt_s);
   return event;
 }
 

@@ -14,6 +14,8 @@ typedef struct vs_facts {
   int defenders, attackers; // of and against that team, in that area
   double ball_mps;
   bool near_ball[VS_TEAMS];
+  // Serie A, LARC: the team that pushes without the ball (-1: none), in whose area (-1: in none) and quadrant the pushed is.
+  int pusher, push_area, push_quadrant;
   int ended_play; // not paper: the team whose area the ball has just left (into the goal or out of it); -1: none
 } vs_facts;
 

@@ -1,6 +1,7 @@
 // The rules of matches between real robots, 2023 (Serie A) and 2026 (LARC), as far as a world shows them: one function
-// a row. What only a person can judge (pushing without the ball, a false start) is left to persons.
+// a row. What only a person can judge (holding the ball, a false start) is left to persons.
 #include <math.h>
+#include <stddef.h>
 
 #include "referee_internal.h"
 #include "vsss/field.h"
@@ -62,8 +63,35 @@ static bool second_attacker_interferes(const vs_world *w, int defender) {
   return false;
 }
 
+// Whom of the other team a robot of this team pushes without the ball in this frame; NULL: nobody.
+static const vs_robot *pushed_by(const vs_world *w, int team) {
+  for (int k = 0; k < VS_TEAM_SIZE * VS_TEAM_SIZE; k++) {
+    const vs_robot *a = &w->robot[team][k / VS_TEAM_SIZE], *b = &w->robot[vs_other_team(team)][k % VS_TEAM_SIZE];
+    double dx = b->pose.x_m - a->pose.x_m, dy = b->pose.y_m - a->pose.y_m, d = hypot(dx, dy);
+    if (d > TOUCH_ROBOT_M || d <= 0) continue;
+    bool with_ball = vs_distance_m(a->pose.x_m, a->pose.y_m, w->ball.x_m, w->ball.y_m) <= VS_PUSH_BALL_M ||
+                     vs_distance_m(b->pose.x_m, b->pose.y_m, w->ball.x_m, w->ball.y_m) <= VS_PUSH_BALL_M;
+    double a_mps = (a->vx_mps * dx + a->vy_mps * dy) / d, b_mps = (b->vx_mps * dx + b->vy_mps * dy) / d;
+    if (!with_ball && a_mps > VS_PUSH_MPS && b_mps > VS_PUSH_MPS) return b;
+  }
+  return NULL;
+}
+
+static void push_clocks(vs_referee *r, const vs_world *world, vs_facts *f) {
+  for (int t = 0; t < VS_TEAMS; t++) {
+    const vs_robot *pushed = pushed_by(world, t);
+    r->push_s[t] = pushed ? r->push_s[t] + f->dt_s : 0;
+    if (!pushed || f->pusher >= 0 || !vs_reached(r->push_s[t], VS_PUSH_S, f->dt_s)) continue;
+    int other = vs_other_team(t);
+    f->pusher = t;
+    f->push_area = in_area_of(t, pushed) ? t : in_area_of(other, pushed) ? other : -1;
+    f->push_quadrant = pushed->pose.y_m >= 0 ? (pushed->pose.x_m >= 0 ? 1 : 2) : (pushed->pose.x_m >= 0 ? 4 : 3);
+  }
+}
+
 void vs_serie_a_clocks(vs_referee *r, const vs_world *world, vs_facts *f) {
   vs_paper_clocks(r, world, f); // the stalemate outside
+  push_clocks(r, world, f);
   if (f->area != r->play_area) {
     f->ended_play = r->play_area;
     r->play_area = f->area;
@@ -111,6 +139,16 @@ static bool contested(const vs_referee *r, const vs_facts *f, vs_event *event) {
   return call(event, VS_EVENT_GOAL_KICK, f->area, f->quadrant);
 }
 
+// In the pusher's own area a penalty; a keeper pushed in its area kicks off; elsewhere a free kick.
+static bool pushing(const vs_referee *r, const vs_facts *f, vs_event *event) {
+  (void)r;
+  if (f->pusher < 0) return false;
+  int pushed = vs_other_team(f->pusher);
+  if (f->push_area == f->pusher) return call(event, VS_EVENT_PENALTY, pushed, 0);
+  if (f->push_area == pushed) return call(event, VS_EVENT_GOAL_KICK, pushed, f->push_quadrant);
+  return call(event, VS_EVENT_FREE_KICK, pushed, 0);
+}
+
 static bool stalemate(const vs_referee *r, const vs_facts *f, vs_event *event) {
   return f->area < 0 && vs_reached(r->still_s, VS_SERIE_A_PATIENCE_S, f->dt_s) &&
          call(event, VS_EVENT_FREE_BALL, VS_BLUE, f->quadrant);
@@ -127,6 +165,7 @@ const vs_rule vs_serie_a_2023_rules[] = {
     {"time is up: half time or end", vs_rule_time},
     {"a second defender has interfered in its area, and the ball has left it: penalty", second_defender},
     {"the ball has left the field: free ball", vs_rule_ball_out},
+    {"a robot pushes another without the ball for 1 s: free kick, in its area penalty, a keeper's goal kick", pushing},
     {"the keeper has not cleared an uncontested ball for 10 s: penalty", keeper_holds},
     {"a contested ball in an area for 10 s: goal kick, after the defenders' foul penalty", contested},
     {"the ball has not moved 2 cm for 10 s elsewhere: free ball", stalemate},
@@ -139,6 +178,7 @@ const vs_rule vs_larc_2026_rules[] = {
     {"time is up: half time or end", vs_rule_time},
     {"a second defender has interfered in its area, and the ball has left it: penalty", second_defender},
     {"the ball has left the field: free ball", vs_rule_ball_out},
+    {"a robot pushes another without the ball for 1 s: free kick, in its area penalty, a keeper's goal kick", pushing},
     {"the keeper has not cleared an uncontested ball for 10 s: penalty", keeper_holds},
     {"a contested ball in an area for 10 s: goal kick, after the defenders' foul penalty", contested},
     {"a stalemate of 10 s again: free ball in the middle", stalemate_again},

@@ -143,6 +143,7 @@ static void call_restart(vs_hosted *m, const vs_event *event) {
   memset(m->drove, 0, sizeof m->drove);
   switch (event->kind) {
   case VS_EVENT_PENALTY: enter(m, VS_PHASE_CALLED, VS_FOUL_PENALTY_KICK, event->team, 0); return;
+  case VS_EVENT_FREE_KICK: enter(m, VS_PHASE_CALLED, VS_FOUL_FREE_KICK, event->team, 0); return;
   case VS_EVENT_GOAL_KICK: enter(m, VS_PHASE_CALLED, VS_FOUL_GOAL_KICK, event->team, event->quadrant); return;
   case VS_EVENT_FREE_BALL: enter(m, VS_PHASE_CALLED, VS_FOUL_FREE_BALL, -1, event->quadrant); return;
   case VS_EVENT_GOAL: // the conceding side's kick-off
@@ -195,6 +196,7 @@ static bool own_places(vs_hosted *m, int team, vs_pose pose[VS_TEAM_SIZE]) {
 static void place_all(vs_hosted *m) {
   vs_world standard, placed;
   vs_place(m->def.referee.placement, &m->restart, &m->truth, &m->rng, &standard);
+  vs_place_without(&m->referee, &standard);
   placed = standard;
   // The kicking team's wish goes first where both want the same place.
   int kicker = m->call.team < 0 ? VS_BLUE : m->call.team;
@@ -204,9 +206,18 @@ static void place_all(vs_hosted *m) {
     if (!own_places(m, t, pose)) continue;
     vs_world with = placed;
     for (int i = 0; i < VS_TEAM_SIZE; i++) with.robot[t][i].pose = pose[i];
+    for (int i = 0; i < VS_TEAM_SIZE; i++)
+      if (vs_referee_off(&m->referee, (vs_team)t, i)) with.robot[t][i].pose = vs_world_beside((vs_team)t, i);
     if (!overlap(&with)) placed = with;
   }
   put(m, &placed);
+}
+
+static void send_off(vs_hosted *m) {
+  for (int t = 0; t < VS_TEAMS; t++)
+    for (int i = 0; i < VS_TEAM_SIZE; i++)
+      if (vs_referee_off(&m->referee, (vs_team)t, i)) vs_sim_put_beside(m->sim, (vs_team)t, i);
+  vs_sim_world(m->sim, &m->truth);
 }
 
 static void referee_frame(vs_hosted *m, vs_event *event) {
@@ -214,9 +225,11 @@ static void referee_frame(vs_hosted *m, vs_event *event) {
     *event = vs_referee_step(&m->referee, &m->truth, m->frame_s);
     if (m->referee.over)
       enter(m, VS_PHASE_OVER, VS_FOUL_HALT, -1, 0);
+    else if (event->kind == VS_EVENT_SENT_OFF)
+      send_off(m);
     else if (event->kind != VS_EVENT_NONE)
       call_restart(m, event);
-    if (event->kind == VS_EVENT_NONE || m->referee.over || m->def.pause_s > 0) return;
+    if (m->phase == VS_PHASE_PLAY || m->referee.over || m->def.pause_s > 0) return;
   }
   if (m->phase == VS_PHASE_CALLED && m->phase_s + 0.5 * m->frame_s >= m->def.pause_s) {
     enter(m, VS_PHASE_STOPPED, VS_FOUL_STOP, m->call.team, m->call.quadrant);
@@ -266,8 +279,15 @@ static vs_status decide(vs_hosted *m, vs_error *err) {
   return VS_OK;
 }
 
+static void hold_off(vs_hosted *m) {
+  for (int t = 0; t < VS_TEAMS; t++)
+    for (int i = 0; i < VS_TEAM_SIZE; i++)
+      if (vs_referee_off(&m->referee, (vs_team)t, i)) m->wheels[t][i] = (vs_wheels){0, 0};
+}
+
 vs_status vs_hosted_frame(vs_hosted *m, vs_hosted_said *said, vs_error *err) {
   vs_status s = decide(m, err);
+  hold_off(m);
   if (s == VS_OK) s = vs_sim_frame(m->sim, (const vs_wheels(*)[VS_TEAM_SIZE])m->wheels, err);
   if (s != VS_OK) {
     vs_fail_prefix(err, "match at %.2f s", m->referee.game.time_s);

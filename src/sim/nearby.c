@@ -92,6 +92,11 @@ void vs_nearby_reset(vs_sim *sim) {
   select_pairs(sim, EVERYTHING);
 }
 
+// Walls are half spaces: who stands there for good was sent off.
+static bool beside(double x, double y) {
+  return fabs(x) > VS_FIELD_HALF_LENGTH_M + VS_BESIDE_M || fabs(y) > VS_FIELD_HALF_WIDTH_M + VS_BESIDE_M;
+}
+
 static bool near_wall(double x, double y, double reach) {
   double ax = fabs(x), ay = fabs(y);
   // The corner triangle's side: x + y = 0.75 + 0.65 - 0.07.
@@ -107,7 +112,7 @@ const mjModel *vs_nearby_view(vs_sim *sim) {
     x[i] = place[0];
     y[i] = place[1];
     reach[i] = i == BALL ? BALL_REACH_M : ROBOT_REACH_M;
-    if (near_wall(x[i], y[i], reach[i])) bits |= UINT32_C(1) << i;
+    if (near_wall(x[i], y[i], reach[i]) && (i == BALL || !beside(x[i], y[i]))) bits |= UINT32_C(1) << i;
     for (int k = 0; k < i; k++) {
       double dx = x[i] - x[k], dy = y[i] - y[k], both = reach[i] + reach[k];
       if (dx * dx + dy * dy < both * both) bits |= UINT32_C(1) << couple_bit(i, k);

@@ -92,20 +92,33 @@ static void set_upright(double *qpos, vs_pose pose) {
   memcpy(qpos, free_joint, sizeof free_joint);
 }
 
+static void set_robot(vs_sim *sim, int robot, vs_pose pose) {
+  double *qpos = sim->data->qpos + sim->model->robot[robot].qpos;
+  if (sim->model->drive == VS_DRIVE_CONTACT) {
+    set_upright(qpos, pose);
+  } else {
+    qpos[0] = pose.x_m;
+    qpos[1] = pose.y_m;
+    qpos[2] = pose.theta_rad;
+  }
+}
+
+void vs_sim_put_beside(vs_sim *sim, vs_team team, int robot) {
+  int i = (int)team * VS_TEAM_SIZE + robot;
+  bool contact = sim->model->drive == VS_DRIVE_CONTACT;
+  const robot_address *address = &sim->model->robot[i];
+  int first = address->qvel, n = contact ? 6 : 3;
+  set_robot(sim, i, vs_world_beside(team, robot));
+  memset(sim->data->qvel + first, 0, sizeof(double) * (size_t)n);
+  memset(sim->data->qacc_warmstart + first, 0, sizeof(double) * (size_t)n);
+  for (int side = 0; side < SIDES && contact; side++) sim->data->qvel[address->wheel_qvel[side]] = 0;
+  memset(sim->wheel[i], 0, sizeof sim->wheel[i]);
+}
+
 void vs_sim_place(vs_sim *sim, const vs_world *world) {
   stop_everything(sim);
   memcpy(sim->data->qpos, sim->mj->qpos0, sizeof(double) * sim->mj->nq); // the wheels' angles too
-  for (int i = 0; i < ROBOTS; i++) {
-    vs_pose pose = world->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE].pose;
-    double *qpos = sim->data->qpos + sim->model->robot[i].qpos;
-    if (sim->model->drive == VS_DRIVE_CONTACT) {
-      set_upright(qpos, pose);
-    } else {
-      qpos[0] = pose.x_m;
-      qpos[1] = pose.y_m;
-      qpos[2] = pose.theta_rad;
-    }
-  }
+  for (int i = 0; i < ROBOTS; i++) set_robot(sim, i, world->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE].pose);
   double *ball = sim->data->qpos + sim->model->ball_qpos;
   const double contact[7] = {world->ball.x_m, world->ball.y_m, VS_BALL_RADIUS_M, 1, 0, 0, 0};
   const double planar[6] = {world->ball.x_m, world->ball.y_m, 1, 0, 0, 0};

@@ -27,6 +27,11 @@ vs_pose vs_world_parked(vs_team team, int robot) {
   return team == VS_BLUE ? blue : vs_pose_rotate_pi(blue);
 }
 
+vs_pose vs_world_beside(vs_team team, int robot) {
+  double x_m = 0.2 * (robot + 1);
+  return (vs_pose){team == VS_BLUE ? -x_m : x_m, VS_FIELD_HALF_WIDTH_M + VS_BESIDE_M + 0.05, 0};
+}
+
 void vs_world_for_team(const vs_world *absolute, vs_team team, vs_world *view) {
   if (team == VS_BLUE) {
     if (view != absolute) *view = *absolute;
@@ -116,8 +121,9 @@ uint64_t vs_world_hash(uint64_t hash, const vs_world *world) {
 }
 
 const char *vs_event_name(vs_event_kind kind) {
-  static const char *const names[VS_EVENT_KINDS] = {"none",      "kick-off",  "goal", "penalty", "free ball",
-                                                    "goal kick", "half time", "end",  "halt"};
+  static const char *const names[VS_EVENT_KINDS] = {"none",      "kick-off",  "goal",      "penalty",
+                                                    "free ball", "goal kick", "half time", "end",
+                                                    "halt",      "free kick", "sent off"};
   return kind < VS_EVENT_KINDS ? names[kind] : "unknown";
 }
 

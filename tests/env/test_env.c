@@ -92,6 +92,53 @@ static void half_time_puts_everything_back(void **state) {
   vs_env_free(env);
 }
 
+// Everybody stands still: by LARC's rules all but the keepers are sent off after 20 s. They stand beside the field, teams
+// see them parked and lost, and a snapshot of then goes on bit for bit; at half time they are back.
+static void robots_that_are_sent_off_wait_beside_the_field_until_half_time(void **state) {
+  (void)state;
+  vs_env_def def = vs_env_def_default(model);
+  def.player[VS_BLUE] = def.player[VS_YELLOW] = "zero:";
+  def.referee = vs_referee_def_default(VS_RULES_LARC_2026);
+  def.referee.duration_s = 60;
+  vs_env *env = NULL;
+  assert_ok(vs_env_new(&def, &env, err));
+  assert_ok(vs_env_reset(env, 1, err));
+  vs_event event = {.kind = VS_EVENT_NONE};
+  vs_world truth, seen;
+  int sent_off = 0;
+  for (int k = 0; k < 22 * VS_CAMERA_HZ; k++) {
+    put_ball(env, k % 200 < 100 ? 0.02 : -0.02, 0.05); // no stalemate
+    assert_ok(vs_env_frame(env, &event, err));
+    sent_off += event.kind == VS_EVENT_SENT_OFF;
+    if (event.kind == VS_EVENT_SENT_OFF) vs_env_truth(env, &truth);
+  }
+  assert_true(sent_off >= 1);
+  for (int t = 0; t < VS_TEAMS; t++)
+    for (int i = 1; i < VS_TEAM_SIZE; i++) {
+      vs_pose beside = vs_world_beside((vs_team)t, i), parked = vs_world_parked((vs_team)t, i);
+      assert_near(truth.robot[t][i].pose.x_m, beside.x_m, 1e-9);
+      assert_near(truth.robot[t][i].pose.y_m, beside.y_m, 1e-9);
+      vs_env_measured(env, &seen);
+      assert_false(seen.robot[t][i].valid);
+      assert_near(seen.robot[t][i].pose.y_m, parked.y_m, 0);
+    }
+  vs_env_truth(env, &truth); // still there two seconds later, at rest: walls do not push
+  assert_near(truth.robot[VS_BLUE][1].pose.y_m, 0.95, 1e-3);
+  assert_true(seen.robot[VS_BLUE][0].valid && seen.robot[VS_YELLOW][0].valid);
+  void *snapshot = aligned_alloc(64, vs_env_state_size(env));
+  vs_env_save(env, snapshot);
+  play_frames(env, 100);
+  uint64_t expected = vs_env_hash(env);
+  assert_ok(vs_env_restore(env, snapshot, err));
+  play_frames(env, 100);
+  assert_int_equal(vs_env_hash(env), expected);
+  free(snapshot);
+  for (event.kind = VS_EVENT_NONE; event.kind != VS_EVENT_HALF_TIME;) assert_ok(vs_env_frame(env, &event, err));
+  vs_env_truth(env, &truth);
+  assert_near(truth.robot[VS_BLUE][1].pose.y_m, 0, 1e-9);
+  vs_env_free(env);
+}
+
 // A player that writes down when it was called.
 static struct {
   int calls;
@@ -429,6 +476,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(both_teams_players_have_seeds_of_their_own),
       cmocka_unit_test(half_time_puts_everything_back),
+      cmocka_unit_test(robots_that_are_sent_off_wait_beside_the_field_until_half_time),
       cmocka_unit_test(same_seed_gives_the_same_match_and_another_seed_another),
       cmocka_unit_test(players_are_called_at_their_own_rate_with_its_dt),
       cmocka_unit_test(a_step_is_three_frames_and_observes_what_it_measured),

@@ -241,6 +241,15 @@ static void assert_legal(const vs_world *w, vs_event_kind kind, vs_team kicker, 
     assert_int_equal(COUNT(0, x * sx > 0 && y * sy > 0) + COUNT(1, x * sx > 0 && y * sy > 0), 2);
     break;
   }
+  case VS_EVENT_FREE_KICK: { // kicker behind the ball, nobody past it; the line of the area held, one a quadrant
+    assert_ball(&v, 0.375, 0);
+    assert_true(COUNT(0, x < 0.375 && hypot(x - 0.375, y) <= 0.3 + 1e-9) >= 1);
+    assert_int_equal(COUNT(0, x <= 0.375 - 0.0375), VS_TEAM_SIZE);
+    assert_int_equal(COUNT(1, x > 0.70 && fabs(y) < 0.2), 1);
+    assert_int_equal(COUNT(1, fabs(x - 0.6) < 0.04 + 1e-9 && y > 0), 1);
+    assert_int_equal(COUNT(1, fabs(x - 0.6) < 0.04 + 1e-9 && y < 0), 1);
+    break;
+  }
   default: { // goal kick: the keeper alone in its area
     double sy = (quadrant < 3 ? 1 : -1) * (kicker == VS_BLUE ? 1 : -1);
     assert_ball(&v, -0.6, sy * 0.35);
@@ -259,6 +268,7 @@ static const struct {
     {VS_EVENT_PENALTY, VS_YELLOW, 0}, {VS_EVENT_FREE_BALL, VS_BLUE, 1},   {VS_EVENT_FREE_BALL, VS_BLUE, 2},
     {VS_EVENT_FREE_BALL, VS_BLUE, 3}, {VS_EVENT_FREE_BALL, VS_BLUE, 4},   {VS_EVENT_GOAL_KICK, VS_BLUE, 2},
     {VS_EVENT_GOAL_KICK, VS_BLUE, 3}, {VS_EVENT_GOAL_KICK, VS_YELLOW, 1}, {VS_EVENT_GOAL_KICK, VS_YELLOW, 4},
+    {VS_EVENT_FREE_KICK, VS_BLUE, 0}, {VS_EVENT_FREE_KICK, VS_YELLOW, 0},
 };
 #define RESTARTS (int)(sizeof restarts / sizeof *restarts)
 
@@ -286,7 +296,7 @@ static void no_random_placement_is_at_once_whistled_again(void **state) {
   for (int n = 0; n < 2000; n++) {
     int k = n % RESTARTS;
     vs_world w = placed(VS_PLACEMENT_RANDOM, restarts[k].kind, restarts[k].kicker, restarts[k].quadrant, &rng);
-    for (int rules = VS_RULES_PAPER; rules <= VS_RULES_LEAGUE; rules++) {
+    for (int rules = VS_RULES_PAPER; rules <= VS_RULES_LARC_2026; rules++) {
       vs_referee r = referee_of((vs_rules)rules, &w);
       assert_int_equal(vs_referee_step(&r, &w, FRAME_S).kind, VS_EVENT_NONE);
     }
@@ -391,6 +401,38 @@ static void own_placements_are_checked_against_each_restart(void **state) {
   assert_int_equal(vs_placement_check(&end, VS_BLUE, any, NULL), VS_FAIL);
 }
 
+// Blue's keeper is off: its last robot takes the goal. Blue's taker is off: the last one kicks. Yellow stays.
+static void who_is_off_stands_beside_the_field_and_the_last_one_moves_up(void **state) {
+  (void)state;
+  for (int off = 0; off < VS_TEAM_SIZE; off++) {
+    vs_world all = placed(VS_PLACEMENT_PAPER, VS_EVENT_PENALTY, VS_BLUE, 0, NULL), w = all;
+    vs_referee r = referee_of(VS_RULES_LARC_2026, &w);
+    r.idle.robot[VS_BLUE][off].off = true;
+    vs_place_without(&r, &w);
+    assert_pose(&w, VS_BLUE, off, -0.2 * (off + 1), 0.95, 0);
+    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+      const vs_pose *was = &all.robot[VS_BLUE][i == 2 ? off : i].pose, *is = &w.robot[VS_BLUE][i].pose;
+      if (i != off) assert_memory_equal(is, was, sizeof *is);
+    }
+    assert_memory_equal(w.robot[VS_YELLOW], all.robot[VS_YELLOW], sizeof all.robot[VS_YELLOW]);
+  }
+}
+
+// Two defenders at the line in one quadrant, or one that is nowhere near it.
+static void a_free_kicks_line_is_checked(void **state) {
+  (void)state;
+  vs_error why = {0};
+  const vs_event event = {.kind = VS_EVENT_FREE_KICK, .team = VS_BLUE};
+  vs_pose pose[VS_TEAM_SIZE] = {{0.71, 0, 0}, {0.56, 0.2, 0}, {0.56, -0.2, 0}};
+  assert_ok(vs_placement_check(&event, VS_YELLOW, pose, err));
+  pose[2].y_m = 0.05;
+  assert_int_equal(vs_placement_check(&event, VS_YELLOW, pose, &why), VS_FAIL);
+  assert_non_null(strstr(why.text, "second of its quadrant"));
+  pose[2] = (vs_pose){0.3, -0.3, 0};
+  assert_int_equal(vs_placement_check(&event, VS_YELLOW, pose, &why), VS_FAIL);
+  assert_non_null(strstr(why.text, "free kick allows none"));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(kick_off_stands_on_the_middle_line_of_the_field),
@@ -400,6 +442,8 @@ int main(void) {
       cmocka_unit_test(goal_kick_keeper_points_at_the_ball_on_the_side_of_the_foul),
       cmocka_unit_test(event_without_a_placement_changes_nothing),
       cmocka_unit_test(everything_is_placed_at_rest_and_the_clock_goes_on),
+      cmocka_unit_test(who_is_off_stands_beside_the_field_and_the_last_one_moves_up),
+      cmocka_unit_test(a_free_kicks_line_is_checked),
       cmocka_unit_test(every_fixed_placement_is_legal),
       cmocka_unit_test(own_placements_are_checked_against_each_restart),
       cmocka_unit_test(ten_thousand_random_placements_are_legal),

@@ -152,6 +152,99 @@ static void a_contested_ball_after_the_defenders_foul_is_a_penalty(void **state)
   }
 }
 
+// Yellow 1 drives at 0.3 m/s against blue 1 and moves it; the ball is elsewhere. At (x, y) or turned.
+static vs_world pushing_at(double x_m, double y_m) {
+  vs_world w = quiet_world(0.3, -0.5);
+  put(&w, VS_BLUE, 1, x_m, y_m);
+  put(&w, VS_YELLOW, 1, x_m + 0.08, y_m);
+  w.robot[VS_BLUE][1].vx_mps = w.robot[VS_YELLOW][1].vx_mps = -0.3;
+  return w;
+}
+
+static void pushing_without_the_ball_for_1_s_is_a_free_kick(void **state) {
+  (void)state;
+  FOR_BOTH(rules, pushed) {
+    vs_world w = pushing_at(-0.2, 0.3);
+    w = turned(&w, pushed);
+    vs_referee r = referee_of((vs_rules)rules, &w);
+    double took_s;
+    assert_event(wait_for_event(&r, &w, 5, &took_s), VS_EVENT_FREE_KICK, (vs_team)pushed, 0);
+    assert_near(took_s, 1, FRAME_S);
+  }
+}
+
+// Not a foul: at the ball, against one that stands, not touching, or for less than a second at a time.
+static void a_fight_for_the_ball_or_a_short_bump_is_no_pushing(void **state) {
+  (void)state;
+  for (int rules = VS_RULES_SERIE_A_2023; rules <= VS_RULES_LARC_2026; rules++)
+    for (int what = 0; what < 4; what++) {
+      vs_world w = pushing_at(-0.2, 0.3), apart = quiet_world(0.3, -0.5);
+      if (what == 0) w.ball.x_m = -0.25, w.ball.y_m = 0.4;
+      if (what == 1) w.robot[VS_BLUE][1].vx_mps = 0;
+      if (what == 2) put(&w, VS_YELLOW, 1, -0.1, 0.3);
+      vs_referee r = referee_of((vs_rules)rules, &w);
+      for (int k = 0; k < 120; k++) {
+        const vs_world *now = what == 3 && k % 29 == 28 ? &apart : &w;
+        assert_int_equal(vs_referee_step(&r, now, FRAME_S).kind, VS_EVENT_NONE);
+      }
+    }
+}
+
+static void a_keeper_pushed_in_its_area_is_a_goal_kick(void **state) {
+  (void)state;
+  FOR_BOTH(rules, pushed) {
+    vs_world w = pushing_at(-0.7, -0.1);
+    w = turned(&w, pushed);
+    vs_referee r = referee_of((vs_rules)rules, &w);
+    double took_s;
+    assert_event(wait_for_event(&r, &w, 5, &took_s), VS_EVENT_GOAL_KICK, (vs_team)pushed, pushed == VS_BLUE ? 3 : 1);
+    assert_near(took_s, 1, FRAME_S);
+  }
+}
+
+static void pushing_in_the_own_area_is_a_penalty(void **state) {
+  (void)state;
+  FOR_BOTH(rules, pushed) {
+    vs_world w = pushing_at(0.65, 0.2);
+    w = turned(&w, pushed);
+    vs_referee r = referee_of((vs_rules)rules, &w);
+    double took_s;
+    assert_event(wait_for_event(&r, &w, 5, &took_s), VS_EVENT_PENALTY, (vs_team)pushed, 0);
+  }
+}
+
+// Blue 1 stands, the others move. Warned after 10 s, sent off after 20 by LARC's rules alone, back at half time; play and
+// its clocks go on.
+static void an_idle_robot_is_sent_off_until_half_time_in_larc_only(void **state) {
+  (void)state;
+  for (int rules = VS_RULES_PAPER; rules <= VS_RULES_LARC_2026; rules++) {
+    vs_world w = quiet_world(0.1, 0.1);
+    vs_referee r = referee_of((vs_rules)rules, &w);
+    r.free_balls = 1;
+    int sent_off = 0;
+    for (int k = 0; k < 21 * 30; k++) {
+      for (int t = 0; t < VS_TEAMS; t++)
+        for (int i = 0; i < VS_TEAM_SIZE; i++)
+          if (t != VS_BLUE || i != 1) put(&w, (vs_team)t, i, (t ? 0.4 : -0.4) + 0.1 * sin(k * FRAME_S), 0.2 * (i - 1));
+      w.ball.x_m = 0.1 + 0.05 * sin(k * FRAME_S);
+      vs_event event = vs_referee_step(&r, &w, FRAME_S);
+      if (event.kind == VS_EVENT_NONE || event.kind == VS_EVENT_FREE_BALL) continue;
+      assert_event(event, VS_EVENT_SENT_OFF, VS_BLUE, 0);
+      assert_near(event.time_s, 20, 2 * FRAME_S);
+      assert_int_equal(r.game.last_event.kind, VS_EVENT_SENT_OFF);
+      assert_int_equal(r.free_balls, 1);
+      sent_off++;
+    }
+    bool larc = rules == VS_RULES_LARC_2026;
+    assert_int_equal(sent_off, larc);
+    for (int i = 0; i < VS_TEAM_SIZE; i++) assert_int_equal(vs_referee_off(&r, VS_BLUE, i), larc && i == 1);
+    assert_true(vs_referee_ok(&r, &r.def));
+    r.game.time_s = r.def.duration_s / 2 - FRAME_S;
+    if (larc) assert_event(vs_referee_step(&r, &w, FRAME_S), VS_EVENT_HALF_TIME, VS_YELLOW, 0);
+    assert_false(vs_referee_off(&r, VS_BLUE, 1));
+  }
+}
+
 static void a_ball_over_the_wall_is_a_free_ball(void **state) {
   (void)state;
   for (int rules = VS_RULES_SERIE_A_2023; rules <= VS_RULES_LARC_2026; rules++) {
@@ -218,6 +311,11 @@ int main(void) {
       cmocka_unit_test(a_keeper_that_does_not_clear_for_10_s_is_a_penalty),
       cmocka_unit_test(a_contested_ball_in_an_area_for_10_s_is_a_goal_kick),
       cmocka_unit_test(a_contested_ball_after_the_defenders_foul_is_a_penalty),
+      cmocka_unit_test(pushing_without_the_ball_for_1_s_is_a_free_kick),
+      cmocka_unit_test(a_fight_for_the_ball_or_a_short_bump_is_no_pushing),
+      cmocka_unit_test(a_keeper_pushed_in_its_area_is_a_goal_kick),
+      cmocka_unit_test(pushing_in_the_own_area_is_a_penalty),
+      cmocka_unit_test(an_idle_robot_is_sent_off_until_half_time_in_larc_only),
       cmocka_unit_test(a_ball_over_the_wall_is_a_free_ball),
       cmocka_unit_test(stalemates_are_free_balls_and_in_2026_again_ones_in_the_middle),
       cmocka_unit_test(a_free_ball_in_the_middle_keeps_the_circle_clear),

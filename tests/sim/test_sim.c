@@ -67,6 +67,26 @@ static void placed_world_reads_back_as_placed(void **state) {
   assert_near(read.ball.z_m, VS_BALL_RADIUS_M, 1e-12);
 }
 
+// Beside the field a robot stands still for 3 s although walls are half spaces, and one that drives there is not thrown.
+static void a_robot_beside_the_field_is_left_alone(void **state) {
+  (void)state;
+  place_alone();
+  vs_world before, read;
+  vs_sim_world(sim, &before);
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    vs_sim_put_beside(sim, VS_BLUE, i);
+    vs_sim_put_beside(sim, VS_YELLOW, i);
+  }
+  frames(90, 0, 0);
+  vs_sim_world(sim, &read);
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
+    vs_pose beside = vs_world_beside((vs_team)(i / 3), i % 3);
+    assert_near(read.robot[i / 3][i % 3].pose.x_m, beside.x_m, 1e-3);
+    assert_near(read.robot[i / 3][i % 3].pose.y_m, beside.y_m, 1e-3);
+  }
+  assert_near(read.ball.x_m, before.ball.x_m, 1e-3);
+}
+
 static void full_command_drives_1_4_mps_straight(void **state) {
   (void)state;
   place_alone();
@@ -193,6 +213,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(placed_world_reads_back_as_placed),
       cmocka_unit_test(a_ball_is_placed_rolling),
+      cmocka_unit_test(a_robot_beside_the_field_is_left_alone),
       cmocka_unit_test(full_command_drives_1_4_mps_straight),
       cmocka_unit_test(time_counts_frames_and_placing_keeps_it),
       cmocka_unit_test(frames_may_have_another_length),
