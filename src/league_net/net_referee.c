@@ -31,6 +31,7 @@ vs_event vs_net_event(const vs_ref_command *call, double time_s) {
   switch (call->foul) {
   case VS_FOUL_KICKOFF: event.kind = VS_EVENT_KICK_OFF; break;
   case VS_FOUL_PENALTY_KICK: event.kind = VS_EVENT_PENALTY; break;
+  case VS_FOUL_FREE_KICK: event.kind = VS_EVENT_FREE_KICK; break;
   case VS_FOUL_GOAL_KICK:
     event.kind = VS_EVENT_GOAL_KICK;
     event.quadrant = call->quadrant;

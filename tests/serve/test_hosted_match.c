@@ -220,40 +220,41 @@ static void an_external_referee_moves_the_match(void **state) {
   vs_hosted_free(match);
 }
 
-// LARC's rules; only yellow 1 drives: it nudges the ball on every 8 s, so that there is no stalemate. After 20 s of play
-// blue 2 is beside the field, and commands do not move it. At half time, when the team sends no places, it is back.
+// LARC's rules against a team that keeps the ball moving: some robot of blue, which stands still, is sent off and stays beside
+// the field whatever is commanded; play goes on. At half time, when the team sends no places, it is back.
 static void idle_robots_are_sent_off_until_half_time_and_play_goes_on(void **state) {
   (void)state;
   vs_hosted_def def = {.model = model,
+                       .player = {NULL, "emc22:"},
                        .referee = vs_referee_def_default(VS_RULES_LARC_2026),
                        .mode = VS_REFEREE_OWN,
-                       .pause_s = 0.1,
-                       .seed = 1};
-  def.referee.duration_s = 50;
+                       .seed = 2};
+  def.referee.duration_s = 80;
+  def.referee.goal_difference_stop = 0;
   assert_ok(vs_robot_preset_find("firasim", &def.robot, err));
   vs_hosted *match = NULL;
   assert_ok(vs_hosted_new(&def, &match, err));
   vs_hosted_begin(match);
-  int sent_off = 0;
-  vs_hosted_said said;
-  while (vs_hosted_game(match)->time_s < 24) {
-    double now_s = vs_hosted_game(match)->time_s, to_m = -0.05 * floor((now_s + 7) / 8);
-    double radps = vs_hosted_world(match)->ball.x_m > to_m ? 6 : 0;
-    vs_hosted_command(match, VS_YELLOW, 1, (vs_wheels){radps, radps});
+  vs_hosted_said said = {.event.kind = VS_EVENT_NONE};
+  while (vs_hosted_game(match)->time_s < 39 && said.event.kind != VS_EVENT_SENT_OFF)
     assert_ok(vs_hosted_frame(match, &said, err));
-    sent_off += said.event.kind == VS_EVENT_SENT_OFF;
-    if (now_s > 22) vs_hosted_command(match, VS_BLUE, 2, (vs_wheels){20, 20});
-  }
-  assert_true(sent_off > 0);
+  assert_int_equal(said.event.kind, VS_EVENT_SENT_OFF);
+  assert_int_equal(said.event.team, VS_BLUE);
+  assert_int_equal(said.calls, 0);
   assert_int_equal(vs_hosted_phase(match), VS_PHASE_PLAY);
-  vs_pose beside = vs_world_beside(VS_BLUE, 2);
-  assert_near(vs_hosted_world(match)->robot[VS_BLUE][2].pose.x_m, beside.x_m, 1e-3);
-  assert_near(vs_hosted_world(match)->robot[VS_BLUE][2].pose.y_m, beside.y_m, 1e-3);
-  assert_true(vs_hosted_world(match)->robot[VS_BLUE][0].pose.y_m < 0.6);
-  vs_hosted_command(match, VS_BLUE, 2, (vs_wheels){0, 0});
-  while (vs_hosted_game(match)->time_s < 25.5) assert_ok(vs_hosted_frame(match, &said, err));
-  assert_near(vs_hosted_world(match)->robot[VS_BLUE][2].pose.x_m, -0.4, 1e-3);
-  assert_near(vs_hosted_world(match)->robot[VS_BLUE][2].pose.y_m, 0, 1e-3);
+  int off = -1;
+  for (int i = 0; i < VS_TEAM_SIZE; i++)
+    if (vs_hosted_world(match)->robot[VS_BLUE][i].pose.y_m > 0.9) off = i;
+  assert_true(off >= 0);
+  vs_pose beside = vs_world_beside(VS_BLUE, off);
+  vs_hosted_command(match, VS_BLUE, off, (vs_wheels){20, 20});
+  while (vs_hosted_game(match)->time_s < 39.9) {
+    assert_ok(vs_hosted_frame(match, &said, err));
+    assert_near(vs_hosted_world(match)->robot[VS_BLUE][off].pose.x_m, beside.x_m, 1e-3);
+    assert_near(vs_hosted_world(match)->robot[VS_BLUE][off].pose.y_m, beside.y_m, 1e-3);
+  }
+  while (vs_hosted_game(match)->time_s < 40.5) assert_ok(vs_hosted_frame(match, &said, err));
+  assert_true(fabs(vs_hosted_world(match)->robot[VS_BLUE][off].pose.y_m) < 0.62);
   vs_hosted_free(match);
 }
 
