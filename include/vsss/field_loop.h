@@ -106,7 +106,7 @@ typedef struct vs_field_tick_result {
   vs_world world;         // tracked, at the frame's capture time
   bool bridged;           // the world was predicted for a frame that did not come, and played on
   const char *said;       // a line worth showing now: what failed, what came back; NULL: nothing. Until the next tick
-  bool decided, stop;     // stop: safety holds the robots
+  bool decided, stop;     // stop: safety holds the robots; where they drive to places nothing is decided
   vs_safety_state safety; // and why
   vs_wheels wheels[VS_TEAM_SIZE];
   int64_t age_us; // of the frame when the bytes were written; of VS_CAMERA_FRAME only
@@ -137,9 +137,17 @@ const char *vs_field_policy_hash(const char *uri, char out[20]);
 // The operator's word: releases the robots, out of a FAULT too, or stops them at once. Until the first release they stand.
 void vs_field_arm(vs_field *field, bool go);
 
+// A network referee's word, beside the operator's. BY_EVENTS: there is none; HALT and END of a referee on LCM stop, all else
+// lets play. PLACE: the robots drive to the places of the last restart that was told, without the player.
+typedef enum vs_field_task { VS_FIELD_BY_EVENTS, VS_FIELD_STAND, VS_FIELD_PLACE, VS_FIELD_PLAY } vs_field_task;
+void vs_field_set_task(vs_field *field, vs_field_task task);
+// Its call, as one on LCM would be heard with the next tick. An event NONE leaves the last one, and gives the match's time.
+void vs_field_tell(vs_field *field, const vs_event *event);
+
 void vs_field_get_stats(vs_field *field, vs_field_stats *out);
 const vs_tracker *vs_field_tracker(const vs_field *field); // robot[VS_OWN], robot[VS_ADVERSARY]
 const vs_camera_info *vs_field_camera(const vs_field *field);
+const vs_game *vs_field_game(const vs_field *field); // clock and score, as a referee told them; absolute frame
 
 #ifdef __cplusplus
 }

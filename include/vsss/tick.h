@@ -38,6 +38,7 @@ typedef struct vs_tick {
   int64_t capture_us;
   double fps;
   bool camera, player_failed, armed, rearm;
+  int task; // vs_field_task
   int n_clock;
   int64_t clock_us[VS_TICK_CLOCKS];
   bool heard;

@@ -7,6 +7,8 @@
 #include "commands.h"
 #include "field_config.h"
 #include "field_guest.h"
+#include "field_publish.h"
+#include "field_referee.h"
 #include "field_report.h"
 #include "operator.h"
 #include "vsss/clock.h"
@@ -17,7 +19,7 @@
 
 typedef struct options {
   const char *camera, *radio, *policy, *team, *attack, *calib, *config, *lcm, *stats, *record, *fallback, *referee,
-      *wire;
+      *wire, *publish, *interface;
   const char *own_tags, *their_tags;
   double seconds;
   uint64_t seed;
@@ -42,8 +44,9 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
       {"policy", VS_FLAG_TEXT, &o->policy, "URI", "who decides; default: field.ini's", 0, 0},
       {"go", VS_FLAG_SWITCH, &o->go, NULL, "the robots may move at once: for rigs, simulators without a referee, tests",
        0, 0},
-      {"referee", VS_FLAG_TEXT, &o->referee, "lcm|FILE",
-       "says go and stop beside the keys: VSSS_REFEREE, or words in a pipe", 0, 0},
+      {"referee", VS_FLAG_TEXT, &o->referee, "lcm|network|FILE",
+       "says go and stop beside the keys: VSSS_REFEREE, a VSSReferee's calls (network:PORTS), or words in a pipe", 0,
+       0},
       {"fallback", VS_FLAG_TEXT, &o->fallback, "URI", "takes over when the policy fails", 0, 0},
       {"team", VS_FLAG_TEXT, &o->team, "TEAM", "ours: blue or yellow", 0, 0},
       {"attack", VS_FLAG_TEXT, &o->attack, "+x|-x", "towards which end of the calibration's frame we play", 0, 0},
@@ -58,6 +61,10 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
       {"stats", VS_FLAG_TEXT, &o->stats, "FILE", "write the latencies and counters as JSON at the end", 0, 0},
       {"record", VS_FLAG_TEXT, &o->record, "FILE",
        "a log from which 'vsss replay FILE --check' computes all again; .csv: the tracked world only", 0, 0},
+      {"publish", VS_FLAG_TEXT, &o->publish, "firasim:[PORTS]",
+       "what is seen, as FIRASim's Environment on 224.0.0.1:10002, for the league's other tools", 0, 0},
+      {"interface", VS_FLAG_TEXT, &o->interface, "NAME",
+       "network of the hall, such as eth0, for the league's messages; else this machine only", 0, 0},
       {"rt", VS_FLAG_INT, &o->rt, "PRIO", "real-time priority, such as 50, and locked memory; 0: none", 0, 99},
       {"lcm", VS_FLAG_TEXT, &o->lcm, "URL", "of the messages", 0, 0},
       {"lcm-remote", VS_FLAG_SWITCH, &o->lcm_remote, NULL, "obey a referee on another machine too", 0, 0},
@@ -105,7 +112,7 @@ static vs_status fill(const options *o, vs_field_config *config, vs_error *err) 
   return VS_OK;
 }
 
-static void print_setup(const vs_field *field, const vs_field_def *def, const char *note) {
+static void print_setup(const vs_field *field, const vs_field_def *def, bool referee, const char *note) {
   const vs_camera_info *camera = vs_field_camera(field);
   printf("camera  %s  %dx%d", camera->name, camera->width, camera->height);
   if (camera->fps > 0) printf(", %g pictures a second", camera->fps);
@@ -122,7 +129,9 @@ static void print_setup(const vs_field *field, const vs_field_def *def, const ch
     printf("radio   none: a dry run, no robot is driven (--radio DEVICE)\n");
   if (def->radio && def->wire && def->wire->lacks) printf("warning: wire %s: %s\n", def->wire->name, def->wire->lacks);
   if (camera->exposure_ms > 5.0) printf("warning: exposed longer than 5 ms tags blur and robots in motion are lost\n");
-  if (!def->go) printf("robots  stand until they are told to go; keys: %s\n", VS_OPERATOR_KEYS);
+  if (!def->go)
+    printf("robots  stand until %s; keys: %s\n", referee ? "the network referee's calls" : "they are told to go",
+           VS_OPERATOR_KEYS);
   printf("%s", note);
   fflush(stdout);
 }
@@ -170,12 +179,35 @@ static void tell(vs_progress *progress, double at_s, const char *said) {
   fflush(stdout);
 }
 
+// Who gives orders, and who is shown the world.
+typedef struct outside {
+  vs_operator keys;
+  field_referee referee;
+  field_publish publish;
+} outside;
+
+// The network's ends first, so that a wrong flag is told before a camera is opened.
+static vs_status open_outside(const options *o, outside *with, vs_error *err) {
+  *with = (outside){.keys = {-1, -1, "", 0}};
+  vs_status s = field_publish_open(o->publish, o->interface, &with->publish, err);
+  if (s == VS_OK) s = field_referee_open(o->referee, o->go, o->interface, &with->referee, err);
+  bool words = o->referee && strcmp(o->referee, "lcm") && !with->referee.on;
+  return s == VS_OK ? vs_operator_open(words ? o->referee : NULL, &with->keys, err) : s;
+}
+
+static void close_outside(outside *with) {
+  vs_operator_close(&with->keys);
+  field_referee_close(&with->referee);
+  field_publish_close(&with->publish);
+}
+
 // False: the operator ends play.
-static bool obey(vs_operator *operator_, vs_field *field, vs_progress *progress, double at_s) {
+static bool obey(outside *with, vs_field *field, vs_progress *progress, double at_s) {
   char unknown[24], text[96];
-  vs_order order = vs_operator_poll(operator_, unknown);
+  if (field_referee_hear(&with->referee, field, text, sizeof text)) tell(progress, at_s, text);
+  vs_order order = vs_operator_poll(&with->keys, unknown);
   if (order == VS_ORDER_NONE) return true;
-  vs_field_arm(field, order == VS_ORDER_GO);
+  field_referee_order(&with->referee, field, order);
   if (*unknown) {
     snprintf(text, sizeof text, "referee: '%s' is none of go, stop, halt; stopped", unknown);
     tell(progress, at_s, text);
@@ -185,8 +217,7 @@ static bool obey(vs_operator *operator_, vs_field *field, vs_progress *progress,
   return order != VS_ORDER_QUIT;
 }
 
-static vs_status run(const options *o, const vs_field_def *def, vs_operator *operator_, vs_field *field,
-                     vs_error *err) {
+static vs_status run(const options *o, const vs_field_def *def, outside *with, vs_field *field, vs_error *err) {
   vs_world_csv record;
   vs_status s = vs_world_csv_open(is_table(o->record) ? o->record : NULL, &record, err);
   if (s != VS_OK) return s;
@@ -196,13 +227,14 @@ static vs_status run(const options *o, const vs_field_def *def, vs_operator *ope
   double spent_s = 0;
   while (!vs_cli_interrupted() && (o->seconds == 0.0 || spent_s < o->seconds)) {
     vs_field_tick_result tick;
-    if (!obey(operator_, field, &progress, spent_s)) break;
+    if (!obey(with, field, &progress, spent_s)) break;
     s = vs_field_tick(field, &tick, err);
     if (s != VS_OK || tick.got == VS_CAMERA_END) break;
     spent_s = 1e-6 * (double)(vs_clock_monotonic_us() - start_us);
     if (tick.said) tell(&progress, spent_s, tick.said);
     show_progress(&progress, def, o->seconds > 0 ? spent_s / o->seconds : -1, &tick);
     if (tick.got != VS_CAMERA_FRAME) continue;
+    field_publish_world(&with->publish, &tick.world, vs_field_game(field));
     mark_seen(field, def, &tick.world);
     vs_world_csv_write(&record, &tick.world, VS_EVENT_NONE);
   }
@@ -218,7 +250,7 @@ int cmd_field(int argc, char **argv) {
   static vs_field_config config;
   static vs_field_stats stats;
   vs_field *field = NULL;
-  vs_operator operator_ = {-1, -1, "", 0};
+  outside with;
   char note[1200] = "", rig_calib[300];
   vs_camera_register(vs_frame_stream_camera());
   vs_status s = parse(argc, argv, &o, &err);
@@ -227,10 +259,20 @@ int cmd_field(int argc, char **argv) {
   if (s != VS_OK) return vs_cli_error("field", &err);
   if (field_guest_is(o.camera) || field_guest_is(o.radio)) {
     const vs_field_def *def = &config.def;
-    const field_guest guest = {o.camera,        o.radio,   def->policy, def->team, def->seed,
-                               def->duration_s, o.seconds, o.record,    o.go,      o.referee};
     vs_cli_catch_interrupts();
     if (o.rt) vs_cli_realtime(o.rt);
+    const field_guest guest = {.camera = o.camera,
+                               .radio = o.radio,
+                               .policy = def->policy,
+                               .team = def->team,
+                               .seed = def->seed,
+                               .duration_s = def->duration_s,
+                               .seconds = o.seconds,
+                               .record = o.record,
+                               .go = o.go,
+                               .interface = o.interface,
+                               .publish = o.publish,
+                               .words = field_referee_is(o.referee) ? NULL : o.referee}; // that one is always heard
     s = o.referee && !strcmp(o.referee, "lcm")
             ? vs_fail(&err, VS_USAGE, "--referee lcm: in a simulator the network referee is obeyed without a flag")
             : field_guest_play(&guest, &err);
@@ -242,15 +284,15 @@ int cmd_field(int argc, char **argv) {
   vs_cli_before_the_end(vs_sender_last_stop);
   vs_sender_stop_at_crash();
   if (o.rt) vs_cli_realtime(o.rt);
-  s = vs_field_new(&config.def, &field, note, sizeof note, &err);
-  if (s == VS_OK) s = vs_operator_open(o.referee && strcmp(o.referee, "lcm") ? o.referee : NULL, &operator_, &err);
+  s = open_outside(&o, &with, &err);
+  if (s == VS_OK) s = vs_field_new(&config.def, &field, note, sizeof note, &err);
   if (s != VS_OK) {
-    vs_field_free(field);
+    close_outside(&with);
     return vs_cli_error("field", &err);
   }
-  print_setup(field, &config.def, note);
-  s = run(&o, &config.def, &operator_, field, &err);
-  vs_operator_close(&operator_);
+  print_setup(field, &config.def, with.referee.on, note);
+  s = run(&o, &config.def, &with, field, &err);
+  close_outside(&with);
   vs_field_get_stats(field, &stats);
   vs_field_free(field); // stops the robots
   vs_field_report_print(&stats);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli.h"
+#include "field_publish.h"
 #include "operator.h"
 #include "vsss/clock.h"
 #include "vsss/guest.h"
@@ -12,7 +13,7 @@
 #include "vsss/serve.h"
 #include "world_csv.h"
 
-static const char *rest_of(const char *source, vs_dialect *dialect) {
+const char *field_guest_rest(const char *source, vs_dialect *dialect) {
   for (int d = VS_DIALECT_FIRASIM; d <= VS_DIALECT_TRAVESIM; d++) {
     const char *name = vs_dialect_name((vs_dialect)d);
     size_t length = strlen(name);
@@ -25,14 +26,15 @@ static const char *rest_of(const char *source, vs_dialect *dialect) {
 
 bool field_guest_is(const char *source) {
   vs_dialect unused;
-  return source && rest_of(source, &unused);
+  return source && field_guest_rest(source, &unused);
 }
 
 static vs_status fill(const field_guest *o, vs_guest_def *def, vs_error *err) {
   vs_dialect dialect = VS_DIALECT_FIRASIM, radio = VS_DIALECT_FIRASIM;
   vs_ports ports = vs_ports_default(), radio_ports;
   const vs_robot_preset *robot;
-  const char *rest = rest_of(o->camera, &dialect), *radio_rest = o->radio ? rest_of(o->radio, &radio) : "";
+  const char *rest = field_guest_rest(o->camera, &dialect),
+             *radio_rest = o->radio ? field_guest_rest(o->radio, &radio) : "";
   if (!rest)
     return vs_fail(err, VS_USAGE,
                    "--radio %.60s needs --camera firasim: or travesim: (its robots are seen nowhere else)", o->radio);
@@ -116,8 +118,12 @@ static void show(const field_guest *o, watch *w, const vs_guest_tick_result *tic
   vs_progress_show(&w->progress, o->seconds > 0 ? spent_s(w) / o->seconds : game->time_s / game->duration_s, text);
 }
 
-static vs_status play(const field_guest *o, vs_guest *guest, vs_operator *operator_, vs_world_csv *record,
-                      vs_error *err) {
+typedef struct sinks {
+  vs_world_csv record;
+  field_publish publish;
+} sinks;
+
+static vs_status play(const field_guest *o, vs_guest *guest, vs_operator *operator_, sinks *to, vs_error *err) {
   watch w = {.before = VS_NET_WAITING, .start_us = vs_clock_monotonic_us()};
   w.seen_us = w.start_us;
   vs_progress_start(&w.progress);
@@ -129,25 +135,38 @@ static vs_status play(const field_guest *o, vs_guest *guest, vs_operator *operat
     if (s != VS_OK) break;
     watch_silence(&w, tick.seen);
     if (!tick.seen) continue;
-    vs_world_csv_write(record, &tick.world, VS_EVENT_NONE);
+    vs_world_csv_write(&to->record, &tick.world, VS_EVENT_NONE);
+    field_publish_world(&to->publish, &tick.world, &tick.game);
     show(o, &w, &tick);
   }
   vs_progress_clear(&w.progress);
   return s;
 }
 
-static vs_status play_recorded(const field_guest *o, vs_guest *guest, vs_error *err) {
-  vs_world_csv record;
+// Its own world would come back to it.
+static vs_status open_publish(const field_guest *o, const vs_guest_def *def, field_publish *publish, vs_error *err) {
+  vs_status s = field_publish_open(o->publish, o->interface, publish, err);
+  if (s != VS_OK || !o->publish || publish->port != def->vision) return s;
+  field_publish_close(publish);
+  return vs_fail(err, VS_USAGE, "--publish %.60s: port %d is the simulator's world; take another (firasim:+10)",
+                 o->publish, def->vision);
+}
+
+static vs_status play_recorded(const field_guest *o, const vs_guest_def *def, vs_guest *guest, vs_error *err) {
+  sinks to;
   vs_operator operator_;
   vs_error at_close = {0};
-  vs_status s = vs_operator_open(o->words, &operator_, err);
+  vs_status s = open_publish(o, def, &to.publish, err);
   if (s != VS_OK) return s;
-  s = vs_world_csv_open(o->record, &record, err);
+  s = vs_operator_open(o->words, &operator_, err);
+  if (s == VS_OK) s = vs_world_csv_open(o->record, &to.record, err);
   if (s == VS_OK) {
-    s = play(o, guest, &operator_, &record, err);
-    if (vs_world_csv_close(&record, &at_close) != VS_OK && s == VS_OK) s = vs_fail(err, VS_FAIL, "%s", at_close.text);
+    s = play(o, guest, &operator_, &to, err);
+    if (vs_world_csv_close(&to.record, &at_close) != VS_OK && s == VS_OK)
+      s = vs_fail(err, VS_FAIL, "%s", at_close.text);
   }
   vs_operator_close(&operator_);
+  field_publish_close(&to.publish);
   return s;
 }
 
@@ -167,7 +186,7 @@ vs_status field_guest_play(const field_guest *o, vs_error *err) {
   if (s == VS_OK) s = vs_guest_new(&def, &guest, err);
   if (s != VS_OK) return s;
   print_setup(o, &def);
-  s = play_recorded(o, guest, err);
+  s = play_recorded(o, &def, guest, err);
   const vs_guest_stats *stats = vs_guest_get_stats(guest);
   printf("%" PRId64 " worlds, %" PRId64 " decisions, %" PRId64 " calls of the referee, %" PRId64 " placements\n",
          stats->worlds, stats->decisions, stats->calls, stats->placements);

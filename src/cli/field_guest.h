@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "vsss/status.h"
+#include "vsss/serve.h"
 #include "vsss/world.h"
 
 typedef struct field_guest {
@@ -16,10 +17,14 @@ typedef struct field_guest {
   double duration_s, seconds; // of the match; then stop (0: until Ctrl-C)
   const char *record;         // CSV, may be NULL
   bool go;                    // play before the network referee has called anything
+  const char *interface;      // of the hall's network; NULL: this machine alone
+  const char *publish;        // where what is seen goes (field_publish.h); NULL: nowhere
   const char *words;          // a file that says go and stop beside the keys (operator.h); NULL: none
 } field_guest;
 
 bool field_guest_is(const char *source); // a simulator's
+// What follows the name and its colon, the ports; NULL: not a simulator's.
+const char *field_guest_rest(const char *source, vs_dialect *dialect);
 vs_status field_guest_play(const field_guest *guest, vs_error *err);
 
 #endif

@@ -17,6 +17,7 @@ size_t vs_tick_encode(const vs_tick *k, int64_t utime_us, int64_t utime_capture_
   t.player_failed = k->player_failed;
   t.armed = k->armed;
   t.rearm = k->rearm;
+  t.task = (int8_t)k->task;
   t.n_clock = k->n_clock;
   memcpy(t.clock_us, k->clock_us, sizeof t.clock_us);
   t.heard = k->heard;
@@ -62,7 +63,7 @@ vs_status vs_tick_decode(const uint8_t *data, size_t size, vs_tick *k, vs_error 
     return vs_fail(err, VS_FAIL, "%s: another version of lcm_types/tick_t.lcm, or damaged", VS_TICK_CHANNEL);
   if (!within(t.n_clock, VS_TICK_CLOCKS) || !within(t.n_tags, VS_TICK_ROWS) || !within(t.n_balls, VS_TICK_ROWS) ||
       !within(t.n_adversaries, VS_TICK_ROWS) || !within(t.kind, VS_EVENT_KINDS - 1) || !within(t.team, VS_TEAMS - 1) ||
-      !within(t.quadrant, 4))
+      !within(t.quadrant, 4) || !within(t.task, 3))
     return vs_fail(err, VS_FAIL, "%s %d: a count or a kind that cannot be", VS_TICK_CHANNEL, t.seq);
   k->seq = t.seq;
   k->frame = t.frame;
@@ -73,6 +74,7 @@ vs_status vs_tick_decode(const uint8_t *data, size_t size, vs_tick *k, vs_error 
   k->player_failed = t.player_failed;
   k->armed = t.armed;
   k->rearm = t.rearm;
+  k->task = t.task;
   k->n_clock = t.n_clock;
   memcpy(k->clock_us, t.clock_us, sizeof k->clock_us);
   k->heard = t.heard;

@@ -9,6 +9,7 @@
 #include "tap.h"
 #include "vsss/control.h"
 #include "vsss/field_loop.h"
+#include "vsss/go_to.h"
 #include "vsss/latency_meter.h"
 #include "vsss/sender.h"
 
@@ -23,8 +24,13 @@ struct vs_field {
   vs_control *control[2];  // the policy's and the fallback's (NULL: none)
   int plays;               // which of them
   bool armed, rearm;       // the operator lets the robots move; and just said so again
-  bool mindless;           // it failed and has not decided since
-  vs_sender *sender;       // NULL: a run computed again
+  vs_field_task task;      // by a network referee
+  vs_event told;           // its call,
+  bool is_told;            // to be heard with the next turn
+  vs_pose place[VS_TEAM_SIZE];
+  vs_go_to go_to;    // to those
+  bool mindless;     // it failed and has not decided since
+  vs_sender *sender; // NULL: a run computed again
   vs_tap tap;
   vs_record record;
   vs_tick tick;   // what this turn was given so far; computed again: what it is given

@@ -25,17 +25,24 @@ static void say(vs_field *f, vs_field_tick_result *r, const char *format, const 
   r->said = f->said;
 }
 
+static vs_event_kind referee_of(const vs_field *f) {
+  if (f->task == VS_FIELD_BY_EVENTS) return f->game.last_event.kind;
+  return f->task == VS_FIELD_STAND ? VS_EVENT_HALT : VS_EVENT_NONE;
+}
+
 // The last word before the radio. moment_us: of the world that the wheels answer to.
 static void judge(vs_field *f, int64_t moment_us, vs_field_tick_result *r) {
   const vs_object *ball = &f->tracker.ball;
   int64_t hold_us = llround(1e6 * f->def.ball_hold_s);
   int64_t now_us = vs_field_clock_us(f);
+  bool places = f->task == VS_FIELD_PLACE;
   vs_safety_input in = {.now_us = now_us,
                         .armed = vs_field_is_armed(f, now_us),
                         .no_camera = f->dark,
-                        .no_ball = hold_us > 0 && (!ball->ever || r->world.time_us - ball->seen_us > hold_us),
-                        .no_player = f->mindless,
-                        .referee = f->game.last_event.kind,
+                        .no_ball =
+                            !places && hold_us > 0 && (!ball->ever || r->world.time_us - ball->seen_us > hold_us),
+                        .no_player = f->mindless && !places,
+                        .referee = referee_of(f),
                         .team = f->def.team,
                         .world = &r->world,
                         .command_us = moment_us};
@@ -49,6 +56,11 @@ static void judge(vs_field *f, int64_t moment_us, vs_field_tick_result *r) {
 static void decide(vs_field *f, vs_field_tick_result *r) {
   double dt_s = f->step_us ? fmax(0.0, 1e-6 * (double)(r->world.time_us - f->step_us)) : 0.0;
   vs_error why = {0};
+  if (f->task == VS_FIELD_PLACE) {
+    vs_go_to_step(&f->go_to, &r->world, f->def.team, f->place, r->wheels);
+    if (r->world.time_us > f->step_us) f->step_us = r->world.time_us;
+    return;
+  }
   if (f->def.rerun && f->tick.player_failed) vs_player_fail_next(vs_control_player(f->control[f->plays]));
   vs_status s =
       vs_control_step(f->control[f->plays], f->def.team, &r->world, &f->game, dt_s, r->wheels, &r->decided, &why);
@@ -188,6 +200,7 @@ vs_status vs_field_tick(vs_field *f, vs_field_tick_result *r, vs_error *err) {
   if (s != VS_OK || r->got == VS_CAMERA_END) return s;
   f->tick.armed = f->armed;
   f->tick.rearm = f->rearm;
+  f->tick.task = f->task;
   if (r->got == VS_CAMERA_FRAME && !vs_field_see(f, &frame, r)) r->got = VS_CAMERA_TIMEOUT;
   f->dark = !f->eyes.camera;
   if (f->dark && (f->eyes.lost != lost || strcmp(f->eyes.why, f->why_dark)))
@@ -203,3 +216,4 @@ vs_status vs_field_tick(vs_field *f, vs_field_tick_result *r, vs_error *err) {
 
 const vs_tracker *vs_field_tracker(const vs_field *f) { return &f->tracker; }
 const vs_camera_info *vs_field_camera(const vs_field *f) { return &f->eyes.info; }
+const vs_game *vs_field_game(const vs_field *f) { return &f->game; }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "vsss/clock.h"
+#include "vsss/referee.h"
 
 #define FAULT_REST_US 1000000
 
@@ -23,6 +24,38 @@ static void obey_referee(vs_field *f, vs_event_kind kind) {
   if (kind == VS_EVENT_HALF_TIME) vs_field_arm(f, false);
 }
 
+void vs_field_set_task(vs_field *f, vs_field_task task) {
+  if (task != f->task) f->last_decision_us = 0; // none was missed while nobody decided
+  f->task = task;
+}
+
+void vs_field_tell(vs_field *f, const vs_event *event) {
+  f->told = *event;
+  f->is_told = true;
+}
+
+// Where the robots belong at the last restart.
+static void choose_places(vs_field *f) {
+  vs_world before = {0}, placed;
+  vs_rng unused = vs_rng_make(0, 0);
+  vs_place(VS_PLACEMENT_PAPER, &f->game.last_event, &before, &unused, &placed);
+  for (int i = 0; i < VS_TEAM_SIZE; i++) f->place[i] = placed.robot[f->def.team][i].pose;
+  f->go_to = (vs_go_to){.delay_s = f->stats.latency_s};
+}
+
+// A network referee tells neither score nor duration.
+static void hear_told(vs_field *f) {
+  f->is_told = false;
+  vs_event event = f->told;
+  if (event.kind == VS_EVENT_NONE) {
+    event = f->game.last_event;
+    event.time_s = f->told.time_s;
+  }
+  f->tap.heard = (vs_msg_referee){.event = event, .duration_s = f->game.duration_s};
+  memcpy(f->tap.heard.score, f->game.score, sizeof f->game.score);
+  f->tap.heard_us = vs_clock_monotonic_us();
+}
+
 // A FAULT is left by being released again; where nobody is there to do so, after a second.
 bool vs_field_is_armed(vs_field *f, int64_t now_us) {
   bool fault = f->safety.state == VS_SAFETY_FAULT;
@@ -38,7 +71,8 @@ void vs_field_hear(vs_field *f, int64_t now_us) {
     f->tap.heard = t->referee;
     f->tap.heard_us = t->heard ? t->heard_us : f->tap.heard_us;
   } else {
-    t->heard = vs_tap_listen(&f->tap);
+    t->heard = vs_tap_listen(&f->tap) || f->is_told;
+    if (f->is_told) hear_told(f);
     t->heard_us = f->tap.heard_us;
     t->referee = f->tap.heard;
   }
@@ -49,6 +83,7 @@ void vs_field_hear(vs_field *f, int64_t now_us) {
     f->game.duration_s = said->duration_s;
     memcpy(f->game.score, said->score, sizeof f->game.score);
     if (f->def.referee_goes) obey_referee(f, said->event.kind);
+    choose_places(f);
     vs_track_restart(&f->tracker);
     for (int i = 0; i < 2 && f->control[i]; i++) vs_control_restart(f->control[i]);
   }

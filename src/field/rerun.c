@@ -44,6 +44,7 @@ vs_status vs_field_again(vs_field *f, const vs_tick *tick, vs_tick *again, vs_er
   f->clock_used = 0;
   f->armed = tick->armed;
   f->rearm = tick->rearm;
+  vs_field_set_task(f, (vs_field_task)tick->task);
   f->dark = !tick->camera;
   f->eyes.info.fps = tick->fps;
   if (tick->frame) vs_field_see(f, &frame, &r);

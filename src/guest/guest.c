@@ -7,13 +7,15 @@
 #include "vsss/clock.h"
 #include "vsss/control.h"
 #include "vsss/field.h"
+#include "vsss/go_to.h"
 #include "vsss/referee.h"
 #include "vsss/udp.h"
 
 #define WAIT_US        100000
 #define VISION_GROUP   "224.0.0.1"
 #define SIMULATOR      "127.0.0.1"
-#define LONGEST_STEP_S 0.5 // the simulator was stopped, or restarted
+#define LONGEST_STEP_S 0.5   // the simulator was stopped, or restarted
+#define DELAY_S        0.017 // a frame, from its world to the wheels
 
 struct vs_guest {
   vs_guest_def def;
@@ -21,6 +23,9 @@ struct vs_guest {
   vs_udp vision, command;
   vs_net_referee referee;
   vs_net_word word; // the operator's
+  bool has_places;  // the call named a restart that has some
+  vs_pose place[VS_TEAM_SIZE];
+  vs_go_to go_to;
   vs_safety safety;
   vs_world world;
   vs_game game;
@@ -91,16 +96,17 @@ void vs_guest_free(vs_guest *g) {
   free(g);
 }
 
-// Where the referee itself would put us: always legal.
-static void send_placement(vs_guest *g) {
+// Where the referee itself would put us, always legal: told to it, and driven to.
+static void choose_places(vs_guest *g) {
   vs_world placed;
   vs_rng unused = vs_rng_make(0, 0);
   vs_ref_placement p = {.team = g->def.team};
   vs_place(VS_PLACEMENT_PAPER, &g->game.last_event, &g->world, &unused, &placed);
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     p.given[i] = true;
-    p.pose[i] = placed.robot[g->def.team][i].pose;
+    p.pose[i] = g->place[i] = placed.robot[g->def.team][i].pose;
   }
+  g->go_to = (vs_go_to){.delay_s = DELAY_S};
   if (vs_net_referee_tell(&g->referee, &p)) g->stats.placements++;
 }
 
@@ -108,7 +114,8 @@ static void hear_referee(vs_guest *g) {
   while (vs_net_referee_hear(&g->referee)) {
     vs_event event = vs_net_event(&g->referee.call, g->game.time_s);
     if (event.kind != VS_EVENT_NONE) g->game.last_event = event;
-    if (g->referee.state == VS_NET_PLACING && event.kind != VS_EVENT_NONE) send_placement(g);
+    g->has_places = g->referee.state == VS_NET_PLACING && event.kind != VS_EVENT_NONE;
+    if (g->has_places) choose_places(g);
     if (g->referee.state == VS_NET_PLAY) vs_control_restart(g->control);
   }
 }
@@ -159,17 +166,18 @@ vs_status vs_guest_tick(vs_guest *g, vs_guest_tick_result *out, vs_error *err) {
   g->world.seq++;
   g->world.time_us = now_us;
   vs_net_task task = vs_net_task_of(g->referee.state, g->word);
-  bool plays = task == VS_NET_AT_PLAY, decided = false;
+  bool plays = task == VS_NET_AT_PLAY, places = task == VS_NET_TO_PLACES && g->has_places, decided = false;
   if (plays) g->game.time_s = fmin(g->game.time_s + dt_s, g->game.duration_s);
   if (plays) {
     vs_status s = vs_control_step(g->control, g->def.team, &g->world, &g->game, dt_s, out->wheels, &decided, err);
     if (s != VS_OK) return s;
   }
+  if (places) vs_go_to_step(&g->go_to, &g->world, g->def.team, g->place, out->wheels);
   g->stats.decisions += decided ? 1 : 0;
   bool released = g->word == VS_NET_GO || (g->word == VS_NET_UNSAID && g->referee.state != VS_NET_WAITING);
   vs_safety_input in = {.now_us = vs_clock_monotonic_us(),
                         .armed = released,
-                        .referee = plays ? VS_EVENT_NONE : VS_EVENT_HALT,
+                        .referee = plays || places ? VS_EVENT_NONE : VS_EVENT_HALT,
                         .team = g->def.team,
                         .world = &g->world,
                         .command_us = now_us};

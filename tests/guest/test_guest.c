@@ -17,16 +17,16 @@ static const struct {
   vs_ref_command call;
   vs_net_state state;
   vs_event_kind event; // NONE: the last one stays
-  bool drives, places;
+  bool drives, places; // places: says where it wants to stand, and drives there
 } rows[] = {
-    {{VS_FOUL_KICKOFF, VS_YELLOW, 0, 1, 1}, VS_NET_PLACING, VS_EVENT_KICK_OFF, false, true},
+    {{VS_FOUL_KICKOFF, VS_YELLOW, 0, 1, 1}, VS_NET_PLACING, VS_EVENT_KICK_OFF, true, true},
     {{VS_FOUL_STOP, VS_YELLOW, 0, 1, 1}, VS_NET_STOPPED, VS_EVENT_NONE, false, false},
     {{VS_FOUL_GAME_ON, -1, 0, 1, 1}, VS_NET_PLAY, VS_EVENT_NONE, true, false},
-    {{VS_FOUL_FREE_BALL, -1, 3, 2, 1}, VS_NET_PLACING, VS_EVENT_FREE_BALL, false, true},
+    {{VS_FOUL_FREE_BALL, -1, 3, 2, 1}, VS_NET_PLACING, VS_EVENT_FREE_BALL, true, true},
     {{VS_FOUL_GAME_ON, -1, 0, 3, 1}, VS_NET_PLAY, VS_EVENT_NONE, true, false},
-    {{VS_FOUL_PENALTY_KICK, VS_BLUE, 0, 4, 1}, VS_NET_PLACING, VS_EVENT_PENALTY, false, true},
+    {{VS_FOUL_PENALTY_KICK, VS_BLUE, 0, 4, 1}, VS_NET_PLACING, VS_EVENT_PENALTY, true, true},
     {{VS_FOUL_STOP, VS_BLUE, 0, 4, 1}, VS_NET_STOPPED, VS_EVENT_NONE, false, false},
-    {{VS_FOUL_GOAL_KICK, VS_YELLOW, 4, 5, 1}, VS_NET_PLACING, VS_EVENT_GOAL_KICK, false, true},
+    {{VS_FOUL_GOAL_KICK, VS_YELLOW, 4, 5, 1}, VS_NET_PLACING, VS_EVENT_GOAL_KICK, true, true},
     {{VS_FOUL_GAME_ON, -1, 0, 6, 2}, VS_NET_PLAY, VS_EVENT_NONE, true, false},
     {{VS_FOUL_HALT, -1, 0, 7, 2}, VS_NET_HALTED, VS_EVENT_HALT, false, false},
     {{VS_FOUL_FREE_KICK, VS_BLUE, 0, 8, 2}, VS_NET_PLACING, VS_EVENT_FREE_KICK, false, true},

@@ -88,14 +88,20 @@ def drives(robots):
     return max(speed(r) for r in robots.values()) > 0.05
 
 
-def is_at(robots, places):
+def is_at(robots, places, near=0.01, turned=0.1):
     turn = lambda r, p: abs(math.remainder(r.theta - p[2], 2 * math.pi))
-    return all(math.hypot(robots[i].x - p[0], robots[i].y - p[1]) < 0.01 and turn(robots[i], p) < 0.1 for i, p in places.items())
+    return all(math.hypot(robots[i].x - p[0], robots[i].y - p[1]) < near and turn(robots[i], p) < turned for i, p in places.items())
 
 
 def place(referee, places):
+    """Yellow says where it wants to stand and drives there by itself, touching nobody; then all are put in their places."""
     ball, blue = places
     yellow = referee.placement()
+    begun = referee.net.world(PATIENCE_S).step
+    there = referee.until("yellow drives to its places", lambda w: is_at(w.robots[1], yellow, 0.02, 0.15), 3)
+    took_s = (there.step - begun) / 1000
+    if took_s > 8:
+        referee.fail("yellow took %.1f s to its places" % took_s)
     blue = {i: (x, y, 0.0) for i, (x, y) in enumerate(blue)}
     robots = [(t, i, x, y, math.degrees(a)) for t, all_ in ((BLUE, blue), (YELLOW, yellow)) for i, (x, y, a) in all_.items()]
     referee.net.send(replacement((ball[0], ball[1], 0.0, 0.0), robots))
@@ -115,7 +121,9 @@ def main():
             referee.until("yellow drives", lambda w: drives(w.robots[1]), 3)
             at += 1
         else:
-            referee.until("both stand", lambda w: stands(w.robots[0]) and stands(w.robots[1]))
+            referee.until("blue stands", lambda w: stands(w.robots[0]))
+            if not places:
+                referee.until("yellow stands", lambda w: stands(w.robots[1]))
         if places:
             place(referee, places)
     if select.select([referee.placements], [], [], 0)[0]:
