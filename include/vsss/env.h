@@ -82,6 +82,7 @@ VSSS_API void vs_env_judged(const vs_env *env,
 VSSS_API void vs_env_measured(const vs_env *env, vs_world *out); // what both teams saw last
 VSSS_API void vs_env_wheels(const vs_env *env, vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]);
 VSSS_API bool vs_env_decided(const vs_env *env, vs_team team); // the last frame was a decision of this team's player
+VSSS_API const vs_referee *vs_env_referee(const vs_env *env);
 VSSS_API const vs_game *vs_env_game(const vs_env *env);
 VSSS_API vs_control *vs_env_control(vs_env *env, vs_team team);
 VSSS_API vs_sim *vs_env_sim(vs_env *env);

@@ -16,6 +16,9 @@ typedef struct vs_match_result {
   uint64_t seed, hash; // hash: of all true worlds
   double time_s;       // played
   int score[VS_TEAMS];
+  int half;                             // it ended in: 0, 1, or referee.h's VS_HALF_
+  int shoot_out[VS_TEAMS];              // kicks scored
+  int lot;                              // referee.h
   int events[VS_TEAMS][VS_EVENT_KINDS]; // by the team the event names: goals scored, penalties and goal kicks taken
   int idle_warnings[VS_TEAMS], idle_sent_off[VS_TEAMS]; // idle.h, whatever the match's rules
   int goals_from[VS_TEAMS][VS_EVENT_KINDS]; // goals within VS_SET_PLAY_S of a restart, by its kind; NONE: open play
@@ -46,6 +49,9 @@ vs_status vs_series_play(const vs_series_def *def, vs_match_result *results, vs_
 // Plays one match to its end in an env that was made for it.
 vs_status vs_match_play(vs_env *env, uint64_t seed, bool (*go_on)(void *context), void *context, vs_match_result *out,
                         vs_error *err);
+// What the referee has in the end.
+void vs_match_end(const vs_env *env, vs_match_result *result);
+int vs_match_winner(const vs_match_result *result); // -1: a draw
 // Adds one event of the match to its counts, a goal to those of the restart it came of.
 void vs_match_count(vs_match_result *result, const vs_event *event);
 // The same for all that a frame brought. idle: all zero at the start of the match.
@@ -72,6 +78,7 @@ typedef struct vs_series_summary {
   double penalty_goals_for, penalty_goals_against, free_ball_goals_for, free_ball_goals_against;
   double still_share; // of the time played
   double mean_time_s;
+  double extra_time, shoot_out, lot; // shares of the matches that went so far
 } vs_series_summary;
 vs_status vs_series_sum_up(const vs_match_result *results, int n, vs_series_summary *out, vs_error *err);
 

@@ -39,6 +39,12 @@ typedef enum vs_placement_mode { VS_PLACEMENT_PAPER, VS_PLACEMENT_RANDOM } vs_pl
 #define VS_LEAGUE_GOAL_KICK_X_M 0.60
 #define VS_LEAGUE_GOAL_KICK_Y_M 0.35
 
+// Extra time: two halves. Shoot-out: so many kicks each, from the penalty mark in turn, then in pairs until one is ahead;
+// after VS_SHOOT_OUT_MOST each a coin is thrown (ours: two teams that never score would not end). A kick is over with a goal,
+// a ball out of the field, or its time.
+#define VS_SHOOT_OUT_KICKS 3
+#define VS_SHOOT_OUT_MOST  20
+
 typedef struct vs_referee_def {
   vs_rules rules;
   vs_placement_mode placement;
@@ -49,18 +55,25 @@ typedef struct vs_referee_def {
   vs_team kick_off;         // who begins
   double still_s;           // paper's rules: a free ball after so long within still_distance_m; VS_STILL_S
   double still_distance_m;  // VS_STILL_DISTANCE_M
+  bool knockout;            // a tied match goes on until there is a winner
+  double extra_half_s;      // paper 36, league 180, Serie A and LARC 120; 0: no extra time
+  double kick_s;            // of a shoot-out: 10, Serie A 30
 } vs_referee_def;
 
-VSSS_API vs_referee_def vs_referee_def_default(vs_rules rules); // a match: paper 120 s, league 2 x 300 s
-VSSS_API vs_referee_def vs_referee_def_training(void);          // 40 s, first goal ends it, random placement
+VSSS_API vs_referee_def vs_referee_def_default(vs_rules rules);             // a match: paper 120 s, league 2 x 300 s
+VSSS_API void vs_referee_def_lasts(vs_referee_def *def, double duration_s); // extra time in proportion
+VSSS_API vs_referee_def vs_referee_def_training(void); // 40 s, first goal ends it, random placement
+
+// Of vs_referee.half. A match of one half has only the first; 0 and 1 are regular time.
+enum { VS_HALF_EXTRA_1 = 2, VS_HALF_EXTRA_2, VS_HALF_SHOOT_OUT };
 
 // Plain data: a copy is a snapshot.
 typedef struct vs_referee {
   vs_referee_def def;
   vs_game game; // clock, score, last event (absolute frame)
   bool over;
-  vs_team kick_off; // who kicks off next
-  int half;         // 0 or 1
+  vs_team kick_off; // who kicks off next; in a shoot-out: who kicks
+  int half;
   // The ball lies still, by either set of rules' meaning, since still_s seconds, the paper's from this point.
   double still_x_m, still_y_m, still_s;
   // League. The team in whose area the ball is (-1: none) and what went wrong there since it came in: for how long two
@@ -72,6 +85,10 @@ typedef struct vs_referee {
   int free_balls;          // in a row
   double push_s[VS_TEAMS]; // for how long the team has been pushing
   vs_idle idle;            // LARC
+  // Shoot-out.
+  int kicks[VS_TEAMS], kicks_scored[VS_TEAMS];
+  int lot;       // 0, or 1 + the team that won by it
+  double kick_s; // since this kick began
 } vs_referee;
 
 // game.last_event is then the first KICK_OFF, which wants vs_place. VS_USAGE: a number out of range.
@@ -79,11 +96,13 @@ VSSS_API vs_status vs_referee_init(vs_referee *referee, const vs_referee_def *de
 // Whether a copy, of a match of this def, can be gone on from: false for numbers that no match has, as in a damaged file.
 VSSS_API bool vs_referee_ok(const vs_referee *referee, const vs_referee_def *def);
 // Time goes on by dt_s and the true world is judged. Returns what happened (VS_EVENT_NONE mostly); game is up to date.
-// GOAL, PENALTY, FREE_BALL, FREE_KICK, GOAL_KICK and HALF_TIME want vs_place and vs_referee_restarted, unless the match is over.
+// GOAL, PENALTY, FREE_BALL, FREE_KICK, GOAL_KICK, HALF_TIME, EXTRA_TIME and SHOOT_OUT want vs_place and vs_referee_restarted, unless the match is over.
 // It is over after END (time is up) and after a GOAL that ends it (first goal of an episode, goal difference, or time
 // up in the same frame: no END follows then). A match that is over returns NONE.
 // SENT_OFF: see vs_referee_off.
 VSSS_API vs_event vs_referee_step(vs_referee *referee, const vs_world *world, double dt_s);
+// Of a match that is over; -1: a draw.
+VSSS_API int vs_referee_winner(const vs_referee *referee);
 // Who is off until the half ends: to be put beside the field (vs_world_beside) and left out of restarts.
 VSSS_API bool vs_referee_off(const vs_referee *referee, vs_team team, int robot);
 // After a placement: the clocks of stillness and of fouls start anew.

@@ -46,7 +46,8 @@ typedef struct vs_render vs_render; // owns one OpenGL context; one thread at a 
 
 // VS_FAIL: no EGL (built without its headers, library or driver missing): says which package to install.
 VSSS_API vs_status vs_render_new(const vs_render_def *def, vs_render **out, vs_error *err);
-VSSS_API void vs_render_free(vs_render *render); // NULL is allowed
+VSSS_API void vs_render_set_title(vs_render *render, const char *title); // as def.title
+VSSS_API void vs_render_free(vs_render *render);                         // NULL is allowed
 
 // Draws world into rgb, uint8_t[height_px][width_px][3], top row first. Pieces that are not valid are left out. game:
 // NULL for a picture without score and captions; the CAMERA view never shows them.

@@ -68,7 +68,9 @@ typedef enum vs_event_kind {
   VS_EVENT_END,
   VS_EVENT_HALT, // from outside: everybody stands still
   VS_EVENT_FREE_KICK,
-  VS_EVENT_SENT_OFF, // a robot of team leaves the field; play goes on
+  VS_EVENT_SENT_OFF,   // a robot of team leaves the field; play goes on
+  VS_EVENT_EXTRA_TIME, // a knockout match is tied: extra time begins
+  VS_EVENT_SHOOT_OUT,  // team takes its next kick of the shoot-out
   VS_EVENT_KINDS
 } vs_event_kind;
 

@@ -154,6 +154,15 @@ static vs_status check_players(const eval_command *c, vs_error *err) {
   return VS_OK;
 }
 
+static void print_knockout(const eval_command *c) {
+  for (int i = 0; i < c->count; i++) {
+    const pairing *p = &c->pairings[i];
+    char both[128];
+    snprintf(both, sizeof both, "%s against %s", name_of(c, p->player[VS_BLUE]), name_of(c, p->player[VS_YELLOW]));
+    vs_report_knockout(stdout, both, &p->summary);
+  }
+}
+
 static void print_restarts(const eval_command *c) {
   printf("\n");
   vs_report_restarts_head(stdout);
@@ -324,6 +333,7 @@ static vs_status evaluate(eval_command *c, const vs_env_def *env, FILE *json, FI
 
   c->round_robin ? print_cross_table(c) : print_restarts(c);
   printf("\n");
+  print_knockout(c);
   print_idle(c);
   if (c->done < c->count * c->matches) printf("\nstopped: %d of %d matches\n", c->done, c->count * c->matches);
   double played_s = 0.0, wall_s = (double)(vs_clock_monotonic_us() - start_us) * 1e-6;

@@ -35,12 +35,16 @@ typedef struct sim_command {
 
 // The terminal: events as lines, score and clock as one line that rewrites itself.
 
-static void print_event(const vs_event *event, const vs_game *game) {
+static void print_event(const vs_event *event, const vs_referee *referee) {
+  const vs_game *game = &referee->game;
   char text[64];
   vs_event_text(event, text, sizeof text);
   printf("%7.2f s  %s", event->time_s, text);
   if (event->kind == VS_EVENT_GOAL || event->kind == VS_EVENT_END)
     printf("  %d : %d", game->score[VS_BLUE], game->score[VS_YELLOW]);
+  if (referee->half == VS_HALF_SHOOT_OUT)
+    printf("  (%d : %d of %d, %d kicks)", referee->kicks_scored[VS_BLUE], referee->kicks_scored[VS_YELLOW],
+           referee->kicks[VS_BLUE], referee->kicks[VS_YELLOW]);
   printf("\n");
   fflush(stdout);
 }
@@ -55,7 +59,7 @@ static vs_status show_frame(void *state, const vs_watch_view *view, vs_error *er
   const vs_game *game = vs_env_game(view->env);
   if (c->events_shown && view->event->kind != VS_EVENT_NONE) {
     vs_progress_clear(&c->progress);
-    print_event(view->event, game);
+    print_event(view->event, vs_env_referee(view->env));
   }
   char text[160];
   snprintf(text, sizeof text, "%s %d : %d %s  %5.1f s", name_of(c, VS_BLUE), game->score[VS_BLUE],
@@ -127,14 +131,6 @@ static vs_status tell_watchers(sim_command *c, vs_env *env, int match, const vs_
   return VS_OK;
 }
 
-static void keep_result(const vs_env *env, vs_match_result *r) {
-  const vs_game *game = vs_env_game(env);
-  memcpy(r->score, game->score, sizeof r->score);
-  r->time_s = game->time_s;
-  r->hash = vs_env_hash(env);
-  r->played = vs_env_over(env);
-}
-
 // One match, frame by frame, under the eyes of the watchers. The result holds what was played, even after Ctrl-C.
 static vs_status play_watched(sim_command *c, vs_env *env, int match, vs_error *err) {
   vs_match_result *r = &c->results[match];
@@ -149,7 +145,7 @@ static vs_status play_watched(sim_command *c, vs_env *env, int match, vs_error *
     vs_match_watch(r, &idle, env, &event);
     s = tell_watchers(c, env, match, &event, err);
   }
-  keep_result(env, r);
+  vs_match_end(env, r);
   return s;
 }
 
@@ -214,6 +210,14 @@ static void print_match(const sim_command *c, double wall_s) {
            r->events[VS_YELLOW][VS_EVENT_FREE_KICK]);
   printf("%-12s %10d\n", "free balls",
          r->events[VS_BLUE][VS_EVENT_FREE_BALL] + r->events[VS_YELLOW][VS_EVENT_FREE_BALL]);
+  if (r->half == VS_HALF_SHOOT_OUT)
+    printf("%-12s %10d %10d\n", "shoot-out", r->shoot_out[VS_BLUE], r->shoot_out[VS_YELLOW]);
+  if (c->match.knockout && r->played)
+    printf("\n%s wins%s\n", vs_team_name((vs_team)vs_match_winner(r)),
+           r->lot                         ? " by lot"
+           : r->half == VS_HALF_SHOOT_OUT ? " the shoot-out"
+           : r->half >= VS_HALF_EXTRA_1   ? " in extra time"
+                                          : "");
   for (int t = 0; t < VS_TEAMS; t++) vs_report_idle(stdout, name_of(c, t), r->idle_warnings[t], r->idle_sent_off[t]);
   printf("\n%s%.1f s played in %.2f s (%.0f times real time), hash %016" PRIx64 "\n",
          r->played ? "" : "stopped: ", r->time_s, wall_s, r->time_s / wall_s, r->hash);
@@ -225,6 +229,7 @@ static void print_series(const sim_command *c, const vs_series_summary *summary,
   printf("\n");
   vs_report_restarts_head(stdout);
   vs_report_restarts_row(stdout, name_of(c, VS_YELLOW), summary);
+  vs_report_knockout(stdout, name_of(c, VS_YELLOW), summary);
   for (int t = 0; t < VS_TEAMS; t++)
     vs_report_idle(stdout, name_of(c, t), summary->idle_warnings[t], summary->idle_sent_off[t]);
   double played_s = summary->mean_time_s * summary->matches;

@@ -33,7 +33,8 @@ vs_status vs_match_flags_open(vs_match_flags *flags, vs_model **model, vs_env_de
   *env = vs_env_def_default(*model);
   env->referee = vs_referee_def_default(rules);
   env->referee.placement = placement;
-  if (flags->seconds > 0) env->referee.duration_s = flags->seconds;
+  if (flags->seconds > 0) vs_referee_def_lasts(&env->referee, flags->seconds);
+  env->referee.knockout = flags->knockout;
   flags->seconds = env->referee.duration_s;
   env->realism = realism;
   env->predicts = predicts;
@@ -48,7 +49,7 @@ void vs_match_flags_about(const char *about, char *out, size_t size) {
 }
 
 void vs_match_flags_describe(const vs_match_flags *flags, char *out, size_t size) {
-  snprintf(out, size, "%s drive, %s rules, %s placement, %g s, seed %" PRIu64 "%s%s", flags->drive, flags->rules,
-           flags->placement, flags->seconds, flags->seed, flags->realism ? ", realism " : "",
-           flags->realism ? flags->realism : "");
+  snprintf(out, size, "%s drive, %s rules%s, %s placement, %g s, seed %" PRIu64 "%s%s", flags->drive, flags->rules,
+           flags->knockout ? ", knockout" : "", flags->placement, flags->seconds, flags->seed,
+           flags->realism ? ", realism " : "", flags->realism ? flags->realism : "");
 }

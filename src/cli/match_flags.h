@@ -7,6 +7,7 @@
 
 typedef struct vs_match_flags {
   const char *drive, *rules, *placement, *realism, *predicts;
+  bool knockout;
   double seconds;
   uint64_t seed;
   int threads;
@@ -23,6 +24,7 @@ vs_match_flags_default(void); // contact drive, paper rules and their length, se
       {"drive", VS_FLAG_TEXT, &(m).drive, "NAME", "contact (the reference) or planar (the fast twin)", 0, 0},            \
       {"rules", VS_FLAG_TEXT, &(m).rules, "NAME", "paper, league (the network referee's), serie-a-2023 or larc-2026", 0, \
        0},                                                                                                               \
+      {"knockout", VS_FLAG_SWITCH, &(m).knockout, NULL, "a tie is followed by extra time and a shoot-out", 0, 0},        \
       {"placement", VS_FLAG_TEXT, &(m).placement, "NAME", "of restarts: paper or random", 0, 0},                         \
       {"predicts",                                                                                                       \
        VS_FLAG_TEXT,                                                                                                     \

@@ -31,6 +31,10 @@ void vs_event_text(const vs_event *event, char *out, size_t size) {
     add(&t, " by %s", vs_team_name(event->team));
   else if (event->kind == VS_EVENT_PENALTY || event->kind == VS_EVENT_KICK_OFF || event->kind == VS_EVENT_FREE_KICK)
     add(&t, " for %s", vs_team_name(event->team));
+  else if (event->kind == VS_EVENT_EXTRA_TIME)
+    add(&t, ", kick-off for %s", vs_team_name(event->team));
+  else if (event->kind == VS_EVENT_SHOOT_OUT)
+    add(&t, ", kick of %s", vs_team_name(event->team));
   else if (event->kind == VS_EVENT_SENT_OFF)
     add(&t, ": a robot of %s, for standing idle", vs_team_name(event->team));
   else if (event->kind == VS_EVENT_GOAL_KICK)

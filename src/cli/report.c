@@ -63,6 +63,14 @@ void vs_report_restarts_row(FILE *out, const char *against, const vs_series_summ
           100.0 * s->still_share, s->mean_time_s, idle);
 }
 
+void vs_report_knockout(FILE *out, const char *against, const vs_series_summary *s) {
+  if (!(s->extra_time + s->shoot_out > 0)) return;
+  fprintf(out, "%s: %.0f of %d matches went to extra time, %.0f to a shoot-out", against, s->extra_time * s->matches,
+          s->matches, s->shoot_out * s->matches);
+  if (s->lot > 0) fprintf(out, ", %.0f to the lot", s->lot * s->matches);
+  fprintf(out, "\n");
+}
+
 void vs_report_idle(FILE *out, const char *player, double warnings, double sent_off) {
   if (!(warnings > 0)) return;
   fprintf(out, "%s breaks the idle rule: a robot stands or spins on the spot for %g s %.1f times a match", player,
@@ -93,7 +101,7 @@ typedef struct plain {
   double value;
 } plain;
 
-enum { PLAINS = 15 };
+enum { PLAINS = 18 };
 static void plains_of(const vs_series_summary *s, plain out[PLAINS]) {
   const plain all[PLAINS] = {{"penalties_for", s->penalties_for},
                              {"penalties_against", s->penalties_against},
@@ -109,7 +117,10 @@ static void plains_of(const vs_series_summary *s, plain out[PLAINS]) {
                              {"free_ball_goals_for", s->free_ball_goals_for},
                              {"free_ball_goals_against", s->free_ball_goals_against},
                              {"still_share", s->still_share},
-                             {"free_kicks", s->free_kicks}};
+                             {"free_kicks", s->free_kicks},
+                             {"extra_time", s->extra_time},
+                             {"shoot_out", s->shoot_out},
+                             {"lot", s->lot}};
   memcpy(out, all, sizeof all);
 }
 
@@ -159,9 +170,10 @@ static void json_number(FILE *out, const char *name, double value) {
 
 void vs_report_json_flags(FILE *out, const vs_match_flags *flags) {
   fprintf(out,
-          "\"drive\": \"%s\", \"rules\": \"%s\", \"placement\": \"%s\", \"seconds\": %g, \"seed\": %" PRIu64
-          ", \"realism\": ",
-          flags->drive, flags->rules, flags->placement, flags->seconds, flags->seed);
+          "\"drive\": \"%s\", \"rules\": \"%s\", \"knockout\": %s, \"placement\": \"%s\", \"seconds\": %g, \"seed\": "
+          "%" PRIu64 ", \"realism\": ",
+          flags->drive, flags->rules, flags->knockout ? "true" : "false", flags->placement, flags->seconds,
+          flags->seed);
   if (flags->realism)
     vs_json_put(out, flags->realism);
   else
@@ -174,6 +186,11 @@ void vs_report_json_match(FILE *out, const vs_match_result *m) {
   json_number(out, "time_s", m->time_s);
   fprintf(out, ", \"finished\": %s, \"score\": [%d, %d]", m->played ? "true" : "false", m->score[VS_BLUE],
           m->score[VS_YELLOW]);
+  static const char *const ended[] = {"regular time", "regular time", "extra time", "extra time", "shoot-out"};
+  int winner = vs_match_winner(m);
+  fprintf(out, ", \"winner\": %s%s%s, \"ended_in\": \"%s\", \"shoot_out\": [%d, %d]", winner < 0 ? "" : "\"",
+          winner < 0 ? "null" : vs_team_name((vs_team)winner), winner < 0 ? "" : "\"", m->lot ? "lot" : ended[m->half],
+          m->shoot_out[VS_BLUE], m->shoot_out[VS_YELLOW]);
   fprintf(out, ", \"penalties\": [%d, %d], \"free_balls\": %d, \"goal_kicks\": [%d, %d], \"free_kicks\": [%d, %d]",
           m->events[VS_BLUE][VS_EVENT_PENALTY], m->events[VS_YELLOW][VS_EVENT_PENALTY],
           m->events[VS_BLUE][VS_EVENT_FREE_BALL] + m->events[VS_YELLOW][VS_EVENT_FREE_BALL],

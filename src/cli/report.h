@@ -12,6 +12,9 @@ void vs_report_table_row(FILE *out, const char *against, const vs_series_summary
 void vs_report_restarts_head(FILE *out);
 void vs_report_restarts_row(FILE *out, const char *against, const vs_series_summary *summary);
 // A line where a player broke the idle rule, per match; nothing where it did not.
+// How many matches of a knockout series went beyond their time; nothing where none did.
+void vs_report_knockout(FILE *out, const char *against, const vs_series_summary *summary);
+
 void vs_report_idle(FILE *out, const char *player, double warnings, double sent_off);
 
 void vs_report_csv_head(FILE *out);

@@ -1,5 +1,7 @@
 // A match as a video: one picture a camera frame, and the moment of an event held for people to see.
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "video.h"
 #include "vsss/contract.h"
@@ -13,9 +15,23 @@ typedef struct video_watch {
   vs_render *render;
   vs_video *video;
   uint8_t *rgb;
+  char title[128];
 } video_watch;
 
+// In a shoot-out the kicks scored stand behind the names.
+static void show_shoot_out(video_watch *w, const vs_referee *referee) {
+  const char *yellow = strstr(w->title, "  ");
+  char text[192];
+  if (referee->half == VS_HALF_SHOOT_OUT && yellow)
+    snprintf(text, sizeof text, "%.*s (%d)  %s (%d)", (int)(yellow - w->title), w->title,
+             referee->kicks_scored[VS_BLUE], yellow + 2, referee->kicks_scored[VS_YELLOW]);
+  else
+    snprintf(text, sizeof text, "%s", w->title);
+  vs_render_set_title(w->render, text);
+}
+
 static vs_status draw(video_watch *w, const vs_env *env, const vs_world *world, int times, vs_error *err) {
+  show_shoot_out(w, vs_env_referee(env));
   vs_status s = vs_render_world(w->render, world, vs_env_game(env), w->rgb, err);
   for (int i = 0; i < times && s == VS_OK; i++) s = vs_video_frame(w->video, w->rgb, err);
   return s;
@@ -48,6 +64,7 @@ vs_status vs_watch_video(const char *path, const char *title, vs_watcher *out, v
   def.title = title;
   video_watch *w = calloc(1, sizeof *w);
   if (!w) return vs_fail(err, VS_FAIL, "out of memory for pictures");
+  snprintf(w->title, sizeof w->title, "%s", title ? title : "");
   w->rgb = malloc((size_t)def.width_px * (size_t)def.height_px * 3);
   vs_status s = w->rgb ? VS_OK : vs_fail(err, VS_FAIL, "out of memory for pictures");
   if (s == VS_OK) s = vs_render_new(&def, &w->render, err);

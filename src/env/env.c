@@ -212,7 +212,8 @@ static vs_status decide(vs_env *env, vs_error *err) {
 
 static bool wants_placement(vs_event_kind kind) {
   return kind == VS_EVENT_KICK_OFF || kind == VS_EVENT_GOAL || kind == VS_EVENT_PENALTY || kind == VS_EVENT_FREE_BALL ||
-         kind == VS_EVENT_GOAL_KICK || kind == VS_EVENT_FREE_KICK || kind == VS_EVENT_HALF_TIME;
+         kind == VS_EVENT_GOAL_KICK || kind == VS_EVENT_FREE_KICK || kind == VS_EVENT_HALF_TIME ||
+         kind == VS_EVENT_EXTRA_TIME || kind == VS_EVENT_SHOOT_OUT;
 }
 
 // Robots that are off stand still beside the field, whatever their team commands.
@@ -328,6 +329,7 @@ void vs_env_wheels(const vs_env *env, vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]) {
   memcpy(out, env->m.wheels, sizeof env->m.wheels);
 }
 bool vs_env_decided(const vs_env *env, vs_team team) { return env->m.decided[team]; }
+const vs_referee *vs_env_referee(const vs_env *env) { return &env->m.referee; }
 const vs_game *vs_env_game(const vs_env *env) { return &env->m.referee.game; }
 vs_control *vs_env_control(vs_env *env, vs_team team) { return env->control[team]; }
 vs_sim *vs_env_sim(vs_env *env) { return env->sim; }

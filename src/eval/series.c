@@ -15,7 +15,8 @@ void vs_match_count(vs_match_result *result, const vs_event *event) {
     bool soon = event->time_s - result->set_play_s <= VS_SET_PLAY_S;
     result->goals_from[event->team][soon ? before : VS_EVENT_NONE]++;
   }
-  bool kick_off = event->kind == VS_EVENT_GOAL || event->kind == VS_EVENT_HALF_TIME;
+  bool kick_off =
+      event->kind == VS_EVENT_GOAL || event->kind == VS_EVENT_HALF_TIME || event->kind == VS_EVENT_EXTRA_TIME;
   if (!kick_off && event->kind != VS_EVENT_PENALTY && event->kind != VS_EVENT_FREE_BALL &&
       event->kind != VS_EVENT_GOAL_KICK && event->kind != VS_EVENT_FREE_KICK)
     return;
@@ -33,6 +34,24 @@ void vs_match_watch(vs_match_result *result, vs_idle *idle, const vs_env *env, c
   memcpy(result->idle_sent_off, idle->sent_off, sizeof result->idle_sent_off);
 }
 
+void vs_match_end(const vs_env *env, vs_match_result *result) {
+  const vs_referee *referee = vs_env_referee(env);
+  memcpy(result->score, referee->game.score, sizeof result->score);
+  memcpy(result->shoot_out, referee->kicks_scored, sizeof result->shoot_out);
+  result->half = referee->half;
+  result->lot = referee->lot;
+  result->time_s = referee->game.time_s;
+  result->hash = vs_env_hash(env);
+  result->played = referee->over;
+}
+
+int vs_match_winner(const vs_match_result *m) {
+  int ahead = m->score[VS_BLUE] - m->score[VS_YELLOW];
+  if (ahead == 0) ahead = m->shoot_out[VS_BLUE] - m->shoot_out[VS_YELLOW];
+  if (ahead == 0) return m->lot - 1;
+  return ahead > 0 ? VS_BLUE : VS_YELLOW;
+}
+
 vs_status vs_match_play(vs_env *env, uint64_t seed, bool (*go_on)(void *context), void *context, vs_match_result *out,
                         vs_error *err) {
   memset(out, 0, sizeof *out);
@@ -47,11 +66,7 @@ vs_status vs_match_play(vs_env *env, uint64_t seed, bool (*go_on)(void *context)
     vs_match_watch(out, &idle, env, &event);
     if (go_on && frame % VS_CAMERA_HZ == 0 && !go_on(context)) return VS_OK;
   }
-  const vs_game *game = vs_env_game(env);
-  memcpy(out->score, game->score, sizeof out->score);
-  out->time_s = game->time_s;
-  out->hash = vs_env_hash(env);
-  out->played = true;
+  vs_match_end(env, out);
   return VS_OK;
 }
 

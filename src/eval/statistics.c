@@ -46,7 +46,10 @@ void vs_match_mirror(const vs_match_result *match, vs_match_result *out) {
     memcpy(out->events[t], match->events[!t], sizeof out->events[t]);
     out->idle_warnings[t] = match->idle_warnings[!t];
     out->idle_sent_off[t] = match->idle_sent_off[!t];
+    out->shoot_out[t] = match->shoot_out[!t];
+    memcpy(out->goals_from[t], match->goals_from[!t], sizeof out->goals_from[t]);
   }
+  if (match->lot) out->lot = VS_TEAMS + 1 - match->lot;
 }
 
 typedef double (*measure_fn)(const vs_match_result *match);
@@ -74,7 +77,8 @@ static double mean_goals_from(const vs_match_result *const *played, int n, int t
 static void sum_up_played(const vs_match_result *const *played, int n, double *scratch, vs_series_summary *out) {
   out->matches = n;
   int won = 0, lost = 0;
-  for (int i = 0; i < n; i++) won += difference(played[i]) > 0, lost += difference(played[i]) < 0;
+  for (int i = 0; i < n; i++)
+    won += vs_match_winner(played[i]) == VS_BLUE, lost += vs_match_winner(played[i]) == VS_YELLOW;
   out->win = vs_rate(won, n);
   out->draw = vs_rate(n - won - lost, n);
   out->loss = vs_rate(lost, n);
@@ -96,6 +100,9 @@ static void sum_up_played(const vs_match_result *const *played, int n, double *s
   double still_s = 0.0;
   for (int i = 0; i < n; i++) {
     out->mean_time_s += played[i]->time_s / n;
+    out->extra_time += (played[i]->half >= VS_HALF_EXTRA_1) / (double)n;
+    out->shoot_out += (played[i]->half == VS_HALF_SHOOT_OUT) / (double)n;
+    out->lot += (played[i]->lot != 0) / (double)n;
     still_s += played[i]->still_s / n;
     for (int t = 0; t < VS_TEAMS; t++) {
       out->idle_warnings[t] += (double)played[i]->idle_warnings[t] / n;

@@ -26,7 +26,8 @@ static int excused(const vs_world *w, int team) {
 
 void vs_idle_step(vs_idle *idle, const vs_world *w, const vs_event *event, double dt_s) {
   bool restart = event->kind != VS_EVENT_NONE && event->kind != VS_EVENT_SENT_OFF,
-       half = event->kind == VS_EVENT_HALF_TIME;
+       half =
+           event->kind == VS_EVENT_HALF_TIME || event->kind == VS_EVENT_EXTRA_TIME || event->kind == VS_EVENT_SHOOT_OUT;
   for (int t = 0; t < VS_TEAMS; t++) {
     int keeper = excused(w, t);
     for (int i = 0; i < VS_TEAM_SIZE; i++) {

@@ -20,7 +20,11 @@ static bool restart_of(const vs_event *event, restart *r) {
   *r = (restart){.kind = event->kind, .kicker = event->team};
   switch (event->kind) {
   case VS_EVENT_GOAL: *r = (restart){.kind = VS_EVENT_KICK_OFF, .kicker = vs_other_team(event->team)}; return true;
-  case VS_EVENT_HALF_TIME: r->kind = VS_EVENT_KICK_OFF; return true;
+  case VS_EVENT_HALF_TIME:
+  case VS_EVENT_EXTRA_TIME: r->kind = VS_EVENT_KICK_OFF; return true;
+  case VS_EVENT_SHOOT_OUT:
+    *r = (restart){.kind = VS_EVENT_PENALTY, .kicker = event->team, .ball_x_m = VS_PENALTY_MARK_X_M};
+    return true;
   case VS_EVENT_KICK_OFF: return true;
   case VS_EVENT_PENALTY:
   case VS_EVENT_FREE_KICK: r->ball_x_m = VS_PENALTY_MARK_X_M; return true;

@@ -15,12 +15,20 @@ vs_referee_def vs_referee_def_default(vs_rules rules) {
                         .halves = 1,
                         .kick_off = VS_BLUE,
                         .still_s = VS_STILL_S,
-                        .still_distance_m = VS_STILL_DISTANCE_M};
+                        .still_distance_m = VS_STILL_DISTANCE_M,
+                        .extra_half_s = 36,
+                        .kick_s = rules == VS_RULES_SERIE_A_2023 ? 30 : 10};
   if (rules != VS_RULES_PAPER) {
     def.duration_s = 600;
     def.halves = 2;
+    def.extra_half_s = rules == VS_RULES_LEAGUE ? 180 : 120;
   }
   return def;
+}
+
+void vs_referee_def_lasts(vs_referee_def *def, double duration_s) {
+  def->extra_half_s *= duration_s / def->duration_s;
+  def->duration_s = duration_s;
 }
 
 vs_referee_def vs_referee_def_training(void) {
@@ -39,6 +47,10 @@ static vs_status check_def(const vs_referee_def *def, vs_error *err) {
   if (!(def->still_s > 0)) return vs_fail(err, VS_USAGE, "a still ball for %g s: more than 0", def->still_s);
   if (!(def->still_distance_m > 0))
     return vs_fail(err, VS_USAGE, "a still ball within %g m: more than 0", def->still_distance_m);
+  if (!(def->extra_half_s >= 0 && def->extra_half_s <= 7200))
+    return vs_fail(err, VS_USAGE, "a half of extra time of %g s: 0 (none) to 7200 s", def->extra_half_s);
+  if (!(def->kick_s > 0 && def->kick_s <= 600))
+    return vs_fail(err, VS_USAGE, "a shoot-out's kick of %g s: more than 0, at most 600 s", def->kick_s);
   if (def->halves != 1 && def->halves != 2) return vs_fail(err, VS_USAGE, "%d halves: 1 or 2", def->halves);
   return VS_OK;
 }
@@ -83,16 +95,24 @@ static bool idle_ok(const vs_idle *idle) {
   return ok;
 }
 
+static bool kicks_ok(const vs_referee *r) {
+  bool ok = vs_all_finite(&r->kick_s, 1) && r->lot >= 0 && r->lot <= VS_TEAMS;
+  for (int t = 0; t < VS_TEAMS; t++)
+    ok = ok && r->kicks_scored[t] >= 0 && r->kicks_scored[t] <= r->kicks[t] && r->kicks[t] <= VS_SHOOT_OUT_MOST;
+  return ok;
+}
+
 bool vs_referee_ok(const vs_referee *r, const vs_referee_def *def) {
   const vs_referee_def *d = &r->def;
   bool same = d->rules == def->rules && d->placement == def->placement && d->duration_s == def->duration_s &&
               d->goal_difference_stop == def->goal_difference_stop && vs_are_bools(&d->end_at_first_goal, 1) &&
               d->end_at_first_goal == def->end_at_first_goal && d->halves == def->halves && is_team(d->kick_off) &&
-              vs_all_finite(&d->still_s, 1) && d->still_s > 0; // an episode draws these two
+              vs_are_bools(&d->knockout, 1) && d->knockout == def->knockout && d->extra_half_s == def->extra_half_s &&
+              d->kick_s == def->kick_s && vs_all_finite(&d->still_s, 1) && d->still_s > 0; // an episode draws these two
   return same && game_ok(&r->game) && vs_are_bools(&r->over, 1) && is_team(r->kick_off) && r->half >= 0 &&
-         r->half <= 1 && vs_all_finite(&r->still_x_m, 3) && r->play_area >= -1 && r->play_area < VS_TEAMS &&
-         vs_all_finite(&r->defence_s, 4) && r->free_balls >= 0 && vs_all_finite(r->push_s, VS_TEAMS) &&
-         idle_ok(&r->idle);
+         r->half <= VS_HALF_SHOOT_OUT && vs_all_finite(&r->still_x_m, 3) && r->play_area >= -1 &&
+         r->play_area < VS_TEAMS && vs_all_finite(&r->defence_s, 4) && r->free_balls >= 0 &&
+         vs_all_finite(r->push_s, VS_TEAMS) && idle_ok(&r->idle) && kicks_ok(r);
 }
 
 void vs_referee_restarted(vs_referee *referee, const vs_world *world) {
@@ -142,15 +162,6 @@ static void facts_of(const vs_world *world, double dt_s, vs_facts *f) {
   }
 }
 
-bool vs_rule_time(const vs_referee *r, const vs_facts *f, vs_event *event) {
-  double end_s = r->def.duration_s * (r->half + 1) / r->def.halves;
-  if (!vs_reached(r->game.time_s, end_s, f->dt_s)) return false;
-  bool last = r->half + 1 == r->def.halves;
-  event->kind = last ? VS_EVENT_END : VS_EVENT_HALF_TIME;
-  if (!last) event->team = vs_other_team(r->def.kick_off);
-  return true;
-}
-
 bool vs_rule_ball_out(const vs_referee *r, const vs_facts *f, vs_event *event) {
   (void)r;
   if (!f->ball_out) return false;
@@ -159,25 +170,20 @@ bool vs_rule_ball_out(const vs_referee *r, const vs_facts *f, vs_event *event) {
   return true;
 }
 
-static bool ends_the_match(const vs_referee *r, double dt_s) {
-  int difference = abs(r->game.score[VS_BLUE] - r->game.score[VS_YELLOW]);
-  if (r->def.end_at_first_goal) return true;
-  if (r->def.goal_difference_stop > 0 && difference >= r->def.goal_difference_stop) return true;
-  return vs_reached(r->game.time_s, r->def.duration_s, dt_s);
-}
-
 static void announce(vs_referee *r, const vs_event *event, double dt_s) {
   r->game.last_event = *event;
   r->free_balls = event->kind == VS_EVENT_FREE_BALL ? r->free_balls + 1 : 0;
   if (event->kind == VS_EVENT_GOAL) {
     r->game.score[event->team]++;
     r->kick_off = vs_other_team(event->team);
-    r->over = ends_the_match(r, dt_s);
+    r->over = vs_ended_by_goal(r, dt_s);
   } else if (event->kind == VS_EVENT_HALF_TIME) {
     r->half++;
     r->kick_off = event->team;
   } else if (event->kind == VS_EVENT_END) {
     r->over = true;
+  } else {
+    vs_extend(r, event);
   }
   forget(r);
 }
@@ -204,6 +210,10 @@ vs_event vs_referee_step(vs_referee *referee, const vs_world *world, double dt_s
 
   vs_facts facts;
   facts_of(world, dt_s, &facts);
+  if (referee->half == VS_HALF_SHOOT_OUT) {
+    vs_shoot_out_step(referee, world, &facts, &event);
+    return event;
+  }
   static const vs_rule *const tables[] = {vs_paper_rules, vs_league_rules, vs_serie_a_2023_rules, vs_larc_2026_rules};
   switch (referee->def.rules) {
   case VS_RULES_PAPER: vs_paper_clocks(referee, world, &facts); break;

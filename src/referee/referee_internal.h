@@ -33,6 +33,11 @@ void vs_paper_clocks(vs_referee *referee, const vs_world *world, const vs_facts 
 void vs_league_clocks(vs_referee *referee, vs_facts *facts);
 void vs_serie_a_clocks(vs_referee *referee, const vs_world *world, vs_facts *facts);
 
+// knockout.c: whether this goal ended the match; what extra time and shoot-out begin with; a frame of a shoot-out.
+bool vs_ended_by_goal(const vs_referee *referee, double dt_s);
+void vs_extend(vs_referee *referee, const vs_event *event);
+void vs_shoot_out_step(vs_referee *referee, const vs_world *world, const vs_facts *facts, vs_event *event);
+
 // Rows both tables have.
 bool vs_rule_time(const vs_referee *referee, const vs_facts *facts, vs_event *event);
 bool vs_rule_ball_out(const vs_referee *referee, const vs_facts *facts, vs_event *event);

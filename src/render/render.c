@@ -251,6 +251,10 @@ static void draw_piece(vs_render *r, bool valid, double x_m, double y_m, double 
   draw_part(r, vs_tile_around(&r->picture, low, high, r->def.view == VS_VIEW_BROADCAST ? r->lamp : NULL), rgb);
 }
 
+void vs_render_set_title(vs_render *r, const char *title) {
+  snprintf(r->title, sizeof r->title, "%s", title ? title : "");
+}
+
 vs_status vs_render_new(const vs_render_def *def, vs_render **out, vs_error *err) {
   *out = NULL;
   vs_status s = check(def, err);
@@ -258,7 +262,7 @@ vs_status vs_render_new(const vs_render_def *def, vs_render **out, vs_error *err
   vs_render *r = calloc(1, sizeof *r);
   if (!r) return vs_fail(err, VS_FAIL, "out of memory");
   r->def = *def;
-  snprintf(r->title, sizeof r->title, "%s", def->title ? def->title : "");
+  vs_render_set_title(r, def->title);
   size_t bytes = (size_t)def->width_px * def->height_px * 3;
   r->still = malloc(bytes);
   r->part = malloc(bytes);

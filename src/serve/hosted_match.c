@@ -142,6 +142,7 @@ static void call_restart(vs_hosted *m, const vs_event *event) {
   memset(m->placed, 0, sizeof m->placed);
   memset(m->drove, 0, sizeof m->drove);
   switch (event->kind) {
+  case VS_EVENT_SHOOT_OUT:
   case VS_EVENT_PENALTY: enter(m, VS_PHASE_CALLED, VS_FOUL_PENALTY_KICK, event->team, 0); return;
   case VS_EVENT_FREE_KICK: enter(m, VS_PHASE_CALLED, VS_FOUL_FREE_KICK, event->team, 0); return;
   case VS_EVENT_GOAL_KICK: enter(m, VS_PHASE_CALLED, VS_FOUL_GOAL_KICK, event->team, event->quadrant); return;

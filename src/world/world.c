@@ -121,9 +121,9 @@ uint64_t vs_world_hash(uint64_t hash, const vs_world *world) {
 }
 
 const char *vs_event_name(vs_event_kind kind) {
-  static const char *const names[VS_EVENT_KINDS] = {"none",      "kick-off",  "goal",      "penalty",
-                                                    "free ball", "goal kick", "half time", "end",
-                                                    "halt",      "free kick", "sent off"};
+  static const char *const names[VS_EVENT_KINDS] = {"none",      "kick-off",   "goal",     "penalty", "free ball",
+                                                    "goal kick", "half time",  "end",      "halt",    "free kick",
+                                                    "sent off",  "extra time", "shoot-out"};
   return kind < VS_EVENT_KINDS ? names[kind] : "unknown";
 }
 

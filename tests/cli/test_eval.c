@@ -52,6 +52,25 @@ static void a_round_robin_prints_cross_table_and_elo(void **state) {
   assert_non_null(strstr(run.out, "0/100/0 +0.00"));
 }
 
+// Matches of 2 s in which nobody scores: each goes to extra time and a shoot-out, and has a winner.
+static void knockout_matches_have_a_winner(void **state) {
+  (void)state;
+  static char arguments[512], path[128], text[65536];
+  snprintf(path, sizeof path, "%s/knockout.json", folder);
+  snprintf(arguments, sizeof arguments,
+           "eval --blue emc22: --against zero: --matches 3 --seconds 2 --drive planar --knockout --json %s", path);
+  play(arguments);
+  assert_non_null(strstr(run.out, "paper rules, knockout"));
+  assert_non_null(strstr(run.out, "emc22: against zero:: 3 of 3 matches went to extra time, 3 to a shoot-out\n"));
+  read_file(path, text, sizeof text);
+  assert_non_null(strstr(text, "\"knockout\": true"));
+  assert_non_null(strstr(text, "\"draw\": {\"mean\": 0,"));
+  int ended = 0;
+  for (const char *at = text; (at = strstr(at, "\"ended_in\": \"shoot-out\"")) != NULL; at++) ended++;
+  assert_int_equal(ended, 3);
+  assert_null(strstr(text, "\"winner\": null"));
+}
+
 // EMC beats a team that stands still from either side; 4 matches of 2 in each colour, and no line is longer than 100.
 static void both_colours_count_together_under_the_names_given(void **state) {
   (void)state;
@@ -105,6 +124,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_table_and_its_files_are_the_same_for_1_and_3_threads),
       cmocka_unit_test(a_round_robin_prints_cross_table_and_elo),
+      cmocka_unit_test(knockout_matches_have_a_winner),
       cmocka_unit_test(both_colours_count_together_under_the_names_given),
       cmocka_unit_test(one_match_of_a_series_is_played_again),
       cmocka_unit_test(an_interrupted_evaluation_prints_what_is_done),

@@ -198,6 +198,26 @@ static void an_lcm_url_that_fails_is_an_error(void **state) {
   assert_string_equal(run.out, "");
 }
 
+// Two teams that stand still: nobody scores in 2 s, 1.2 s more and 40 kicks, and the lot decides; the same one every time.
+static void a_knockout_match_goes_on_until_there_is_a_winner(void **state) {
+  (void)state;
+  static vsss_run again;
+  vsss(&run, "sim --blue zero: --yellow zero: --seconds 2 --drive planar --knockout");
+  assert_int_equal(run.status, 0);
+  assert_non_null(strstr(run.out, "2.00 s  extra time, kick-off for blue\n"));
+  assert_non_null(strstr(run.out, "shoot-out, kick of yellow  (0 : 0 of 1, 0 kicks)\n"));
+  const char *end = strstr(run.out, "end  0 : 0  (0 : 0 of 20, 20 kicks)\n"),
+             *winner = strstr(run.out, " wins by lot\n");
+  assert_non_null(end);
+  assert_non_null(winner);
+  vsss(&again, "sim --blue zero: --yellow zero: --seconds 2 --drive planar --knockout");
+  const char *same = strstr(again.out, " wins by lot\n");
+  assert_non_null(same);
+  assert_memory_equal(winner - 4, same - 4, 4);
+  vsss(&again, "sim --blue zero: --yellow zero: --seconds 2 --drive planar");
+  assert_null(strstr(again.out, "shoot-out"));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_match_shows_its_events_and_a_table),
@@ -211,6 +231,7 @@ int main(void) {
       cmocka_unit_test(messages_over_udp_go_out_at_a_pace_that_listeners_keep),
       cmocka_unit_test(help_names_every_flag),
       cmocka_unit_test(bad_requests_are_refused_in_one_line),
+      cmocka_unit_test(a_knockout_match_goes_on_until_there_is_a_winner),
       cmocka_unit_test(an_lcm_url_that_fails_is_an_error),
   };
   return cmocka_run_group_tests_name("cli/sim", tests, NULL, NULL);
