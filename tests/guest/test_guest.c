@@ -29,7 +29,7 @@ static const struct {
     {{VS_FOUL_GOAL_KICK, VS_YELLOW, 4, 5, 1}, VS_NET_PLACING, VS_EVENT_GOAL_KICK, true, true},
     {{VS_FOUL_GAME_ON, -1, 0, 6, 2}, VS_NET_PLAY, VS_EVENT_NONE, true, false},
     {{VS_FOUL_HALT, -1, 0, 7, 2}, VS_NET_HALTED, VS_EVENT_HALT, false, false},
-    {{VS_FOUL_FREE_KICK, VS_BLUE, 0, 8, 2}, VS_NET_PLACING, VS_EVENT_FREE_KICK, false, true},
+    {{VS_FOUL_FREE_KICK, VS_BLUE, 0, 8, 2}, VS_NET_PLACING, VS_EVENT_FREE_KICK, true, true},
 };
 
 static vs_guest *open_guest(vs_team team, vs_udp *vision, vs_udp *referee, vs_udp *commands, vs_udp *placements) {
