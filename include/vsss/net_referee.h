@@ -27,7 +27,7 @@ typedef enum vs_net_word { VS_NET_UNSAID, VS_NET_GO, VS_NET_STOP } vs_net_word;
 typedef enum vs_net_task { VS_NET_STAND, VS_NET_TO_PLACES, VS_NET_AT_PLAY } vs_net_task;
 vs_net_task vs_net_task_of(vs_net_state state, vs_net_word word);
 
-// A call as an event of ours: NONE where play just stops or goes on, and for a free kick, which has no places here.
+// A call as an event of ours: NONE where play just stops or goes on.
 vs_event vs_net_event(const vs_ref_command *call, double time_s);
 
 typedef struct vs_net_referee {

@@ -32,11 +32,10 @@ static const struct {
   int team;
   bool drives;
 } rows[] = {
-    {VS_FOUL_HALT, -1, false},           {VS_FOUL_KICKOFF, VS_BLUE, true}, // to its place
-    {VS_FOUL_STOP, -1, false},           {VS_FOUL_GAME_ON, -1, true},
-    {VS_FOUL_FREE_KICK, VS_BLUE, false}, {VS_FOUL_PENALTY_KICK, VS_BLUE, true},
-    {VS_FOUL_HALT, -1, false},           {VS_FOUL_GAME_ON, -1, true},
-    {VS_FOUL_STOP, -1, false},
+    {VS_FOUL_HALT, -1, false},          {VS_FOUL_KICKOFF, VS_BLUE, true}, // to its place
+    {VS_FOUL_STOP, -1, false},          {VS_FOUL_GAME_ON, -1, true},      {VS_FOUL_STOP, -1, false},
+    {VS_FOUL_FREE_KICK, VS_BLUE, true}, {VS_FOUL_STOP, -1, false},        {VS_FOUL_PENALTY_KICK, VS_BLUE, true},
+    {VS_FOUL_HALT, -1, false},          {VS_FOUL_GAME_ON, -1, true},      {VS_FOUL_STOP, -1, false},
 };
 
 static void calls_move_a_team_with_a_camera(void **state) {

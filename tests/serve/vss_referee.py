@@ -14,6 +14,7 @@ KICK_OFF = ((0, 0), [(-0.675, 0), (-0.2, 0), (-0.4, 0.3)])
 FREE_BALL_3 = ((-0.375, -0.4), [(-0.675, 0), (-0.575, -0.4), (-0.3, 0.1)])
 PENALTY_BLUE = ((0.375, 0), [(-0.675, 0), (0.2, 0), (-0.1, 0.4)])
 GOAL_KICK_YELLOW_1 = ((0.6, 0.35), [(-0.675, 0), (-0.2, 0.1), (-0.3, -0.3)])
+FREE_KICK_BLUE = ((0.375, 0), [(-0.675, 0), (0.2, 0), (-0.1, 0.4)])
 # Each row is a transition from the row before: call, team, quadrant, places.
 ROWS = [
     (HALT, NONE, 0, None),
@@ -30,7 +31,7 @@ ROWS = [
     (GOAL_KICK, YELLOW, 1, GOAL_KICK_YELLOW_1),
     (STOP, NONE, 0, None),
     (GAME_ON, NONE, 0, None),
-    (FREE_KICK, BLUE, 0, None),
+    (FREE_KICK, BLUE, 0, FREE_KICK_BLUE),
     (GAME_ON, NONE, 0, None),
     (HALT, NONE, 0, None),
 ]
