@@ -54,6 +54,9 @@ VSSS_API vs_status vs_control_set_action(vs_control *control, const float *actio
 VSSS_API void vs_control_peek(const vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game,
                               vs_observer *out);
 
+// The world that the player would be shown, in the absolute frame: moved on by the latency. The control is not changed.
+VSSS_API void vs_control_ahead(const vs_control *control, vs_team team, const vs_world *absolute, vs_world *out);
+
 VSSS_API const vs_observer *vs_control_observer(const vs_control *control);
 VSSS_API const float *vs_control_action(const vs_control *control); // the last, [3][2] in [-1, 1]
 VSSS_API vs_player *vs_control_player(vs_control *control);         // NULL for an external team

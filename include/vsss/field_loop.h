@@ -102,6 +102,7 @@ typedef struct vs_field_stats {
 // What one frame came to, or the time in which none came.
 typedef struct vs_field_tick_result {
   vs_camera_got got;      // VS_CAMERA_TIMEOUT: no frame; world is then predicted, or the last
+  int64_t now_us;         // when the tick ended, monotonic
   int64_t silent_us;      // since the last frame came; without one yet: since the start
   vs_world world;         // tracked, at the frame's capture time
   bool bridged;           // the world was predicted for a frame that did not come, and played on
@@ -148,6 +149,13 @@ void vs_field_get_stats(vs_field *field, vs_field_stats *out);
 const vs_tracker *vs_field_tracker(const vs_field *field); // robot[VS_OWN], robot[VS_ADVERSARY]
 const vs_camera_info *vs_field_camera(const vs_field *field);
 const vs_game *vs_field_game(const vs_field *field); // clock and score, as a referee told them; absolute frame
+// For who draws what is going on: the picture of the last tick, whole until the next one (NULL: it had none), what was found
+// in it, where the camera is, and the world that the player was shown.
+const vs_frame *vs_field_frame(const vs_field *field);
+const vs_detections *vs_field_seen(const vs_field *field);
+const vs_calib *vs_field_calib(const vs_field *field);
+void vs_field_ahead(const vs_field *field, const vs_world *now, vs_world *out);
+double vs_field_latency_s(const vs_field *field); // by which that world is moved on
 
 #ifdef __cplusplus
 }

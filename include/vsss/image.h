@@ -35,6 +35,10 @@ void vs_image_from_grey(const uint8_t *luma, int luma_stride, int width, int hei
 void vs_image_line(vs_image *image, double x0_px, double y0_px, double x1_px, double y1_px, int width_px,
                    const uint8_t colour[3]);
 void vs_image_disc(vs_image *image, double x_px, double y_px, double radius_px, const uint8_t colour[3]);
+// A filled box, its upper left corner at (x_px, y_px), clipped too.
+void vs_image_box(vs_image *image, int x_px, int y_px, int width_px, int height_px, const uint8_t colour[3]);
+// Capitals, digits and . , : - + / % ( ) of 5 by 7 dots, a step of 6, from the upper left corner; others are question marks.
+void vs_image_text(vs_image *image, int x_px, int y_px, int dot_px, const char *text, const uint8_t colour[3]);
 
 // The following need OpenCV (module "opencv"): without it VS_FAIL says what to install.
 // Writes a picture; the ending of path chooses PNG or JPEG.

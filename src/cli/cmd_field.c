@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "field_config.h"
 #include "field_guest.h"
+#include "field_overlay.h"
 #include "field_publish.h"
 #include "field_referee.h"
 #include "field_report.h"
@@ -19,7 +20,7 @@
 
 typedef struct options {
   const char *camera, *radio, *policy, *team, *attack, *calib, *config, *lcm, *stats, *record, *fallback, *referee,
-      *wire, *publish, *interface;
+      *wire, *publish, *interface, *overlay;
   const char *own_tags, *their_tags;
   double seconds;
   uint64_t seed;
@@ -65,6 +66,8 @@ static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
        "what is seen, as FIRASim's Environment on 224.0.0.1:10002, for the league's other tools", 0, 0},
       {"interface", VS_FLAG_TEXT, &o->interface, "NAME",
        "network of the hall, such as eth0, for the league's messages; else this machine only", 0, 0},
+      {"overlay", VS_FLAG_TEXT, &o->overlay, "FILE.mp4",
+       "a video: found, tracked, predicted and commanded drawn into the camera's pictures", 0, 0},
       {"rt", VS_FLAG_INT, &o->rt, "PRIO", "real-time priority, such as 50, and locked memory; 0: none", 0, 99},
       {"lcm", VS_FLAG_TEXT, &o->lcm, "URL", "of the messages", 0, 0},
       {"lcm-remote", VS_FLAG_SWITCH, &o->lcm_remote, NULL, "obey a referee on another machine too", 0, 0},
@@ -184,6 +187,7 @@ typedef struct outside {
   vs_operator keys;
   field_referee referee;
   field_publish publish;
+  field_overlay *overlay; // NULL: none
 } outside;
 
 // The network's ends first, so that a wrong flag is told before a camera is opened.
@@ -232,6 +236,7 @@ static vs_status run(const options *o, const vs_field_def *def, outside *with, v
     if (s != VS_OK || tick.got == VS_CAMERA_END) break;
     spent_s = 1e-6 * (double)(vs_clock_monotonic_us() - start_us);
     if (tick.said) tell(&progress, spent_s, tick.said);
+    if (with->overlay) field_overlay_show(with->overlay, field, &tick);
     show_progress(&progress, def, o->seconds > 0 ? spent_s / o->seconds : -1, &tick);
     if (tick.got != VS_CAMERA_FRAME) continue;
     field_publish_world(&with->publish, &tick.world, vs_field_game(field));
@@ -241,6 +246,13 @@ static vs_status run(const options *o, const vs_field_def *def, outside *with, v
   vs_progress_clear(&progress);
   vs_error at_close = {0};
   if (vs_world_csv_close(&record, &at_close) != VS_OK && s == VS_OK) return vs_fail(err, VS_FAIL, "%s", at_close.text);
+  return s;
+}
+
+static vs_status end_overlay(field_overlay *overlay, const char *path, vs_error *err) {
+  int64_t left_out = 0;
+  vs_status s = field_overlay_close(overlay, &left_out, err);
+  if (s == VS_OK && overlay) printf("%s: %lld pictures left out\n", path, (long long)left_out);
   return s;
 }
 
@@ -273,7 +285,8 @@ int cmd_field(int argc, char **argv) {
                                .interface = o.interface,
                                .publish = o.publish,
                                .words = field_referee_is(o.referee) ? NULL : o.referee}; // that one is always heard
-    s = o.referee && !strcmp(o.referee, "lcm")
+    s = o.overlay ? vs_fail(&err, VS_USAGE, "--overlay %s: a simulator sends no pictures", o.overlay)
+        : o.referee && !strcmp(o.referee, "lcm")
             ? vs_fail(&err, VS_USAGE, "--referee lcm: in a simulator the network referee is obeyed without a flag")
             : field_guest_play(&guest, &err);
     return s == VS_OK ? 0 : vs_cli_error("field", &err);
@@ -286,7 +299,9 @@ int cmd_field(int argc, char **argv) {
   if (o.rt) vs_cli_realtime(o.rt);
   s = open_outside(&o, &with, &err);
   if (s == VS_OK) s = vs_field_new(&config.def, &field, note, sizeof note, &err);
+  if (s == VS_OK && o.overlay) s = field_overlay_open(o.overlay, field, &config.def, &with.overlay, &err);
   if (s != VS_OK) {
+    vs_field_free(field);
     close_outside(&with);
     return vs_cli_error("field", &err);
   }
@@ -296,6 +311,11 @@ int cmd_field(int argc, char **argv) {
   vs_field_get_stats(field, &stats);
   vs_field_free(field); // stops the robots
   vs_field_report_print(&stats);
+  vs_error at_close = {0};
+  if (end_overlay(with.overlay, o.overlay, &at_close) != VS_OK && s == VS_OK) {
+    err = at_close;
+    s = VS_FAIL;
+  }
   if (stats.lost_record && s == VS_OK)
     s = vs_fail(&err, VS_FAIL, "%s: %lld turns are missing; is the disk full?", o.record, (long long)stats.lost_record);
   if (o.stats && s == VS_OK) s = vs_field_report_json(o.stats, &stats, &err);

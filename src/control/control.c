@@ -100,16 +100,24 @@ vs_status vs_control_set_latency(vs_control *control, double latency_s, vs_error
 }
 
 // What the player is shown: the team's view of the world at the moment when its command will act.
+static void move_on(vs_predictor *predictor, double latency_s, vs_team team, const vs_world *absolute, vs_world *out) {
+  *out = *absolute;
+  if (!(latency_s > 0)) return;
+  vs_predictor_see(predictor, team, latency_s, absolute);
+  vs_predictor_ahead(predictor, team, latency_s, out);
+}
+
 static void show(vs_predictor *predictor, double latency_s, vs_team team, const vs_world *absolute, const vs_game *game,
                  vs_world *view, vs_game *game_view) {
   vs_world ahead;
-  if (latency_s > 0) {
-    vs_predictor_see(predictor, team, latency_s, absolute);
-    vs_predictor_ahead(predictor, team, latency_s, &ahead);
-    absolute = &ahead;
-  }
-  vs_world_for_team(absolute, team, view);
+  move_on(predictor, latency_s, team, absolute, &ahead);
+  vs_world_for_team(&ahead, team, view);
   vs_game_for_team(game, team, game_view);
+}
+
+void vs_control_ahead(const vs_control *control, vs_team team, const vs_world *absolute, vs_world *out) {
+  vs_predictor predictor = control->now.predictor;
+  move_on(&predictor, control->now.latency_s, team, absolute, out);
 }
 
 void vs_control_observe(vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game) {

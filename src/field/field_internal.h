@@ -42,6 +42,8 @@ struct vs_field {
   int64_t step_us;           // moment of the world that control was stepped with last; 0: none yet
   int64_t came_us, awake_us; // when the last frame came; when a missing one is bridged
   uint32_t last_seq;
+  vs_frame frame; // of this tick
+  bool has_frame;
   vs_detections seen;
   char said[400], why_dark[sizeof((vs_eyes *)0)->why]; // the last lines of each kind
   int64_t mark_us;                                     // end of the last stage

@@ -194,26 +194,36 @@ void vs_field_turn(vs_field *f, const vs_frame *frame, vs_field_tick_result *r) 
 vs_status vs_field_tick(vs_field *f, vs_field_tick_result *r, vs_error *err) {
   memset(r, 0, sizeof *r);
   memset(&f->tick, 0, sizeof f->tick);
-  vs_frame frame;
+  vs_frame *frame = &f->frame;
+  f->has_frame = false;
   int64_t lost = f->eyes.lost, reopened = f->eyes.reopened;
-  vs_status s = vs_eyes_read(&f->eyes, wait_ms(f), &frame, &r->got, err);
+  vs_status s = vs_eyes_read(&f->eyes, wait_ms(f), frame, &r->got, err);
   if (s != VS_OK || r->got == VS_CAMERA_END) return s;
   f->tick.armed = f->armed;
   f->tick.rearm = f->rearm;
   f->tick.task = f->task;
-  if (r->got == VS_CAMERA_FRAME && !vs_field_see(f, &frame, r)) r->got = VS_CAMERA_TIMEOUT;
+  if (r->got == VS_CAMERA_FRAME && !vs_field_see(f, frame, r)) r->got = VS_CAMERA_TIMEOUT;
   f->dark = !f->eyes.camera;
   if (f->dark && (f->eyes.lost != lost || strcmp(f->eyes.why, f->why_dark)))
     say(f, r, "camera gone: %s; the robots are stopped, looking for it", f->eyes.why);
   snprintf(f->why_dark, sizeof f->why_dark, "%s", f->eyes.why);
   if (f->eyes.reopened != reopened) say(f, r, "camera back: %s", f->eyes.info.name);
-  const vs_frame *got = r->got == VS_CAMERA_FRAME ? &frame : NULL;
+  f->has_frame = r->got == VS_CAMERA_FRAME;
+  const vs_frame *got = vs_field_frame(f);
   vs_field_turn(f, got, r);
   if (f->record.bus) vs_field_keep(f, got, r);
-  r->silent_us = vs_clock_monotonic_us() - f->came_us;
+  r->now_us = vs_clock_monotonic_us();
+  r->silent_us = r->now_us - f->came_us;
   return VS_OK;
 }
 
 const vs_tracker *vs_field_tracker(const vs_field *f) { return &f->tracker; }
 const vs_camera_info *vs_field_camera(const vs_field *f) { return &f->eyes.info; }
 const vs_game *vs_field_game(const vs_field *f) { return &f->game; }
+const vs_frame *vs_field_frame(const vs_field *f) { return f->has_frame ? &f->frame : NULL; }
+const vs_detections *vs_field_seen(const vs_field *f) { return &f->seen; }
+const vs_calib *vs_field_calib(const vs_field *f) { return &f->calib; }
+double vs_field_latency_s(const vs_field *f) { return f->stats.latency_s; }
+void vs_field_ahead(const vs_field *f, const vs_world *now, vs_world *out) {
+  vs_control_ahead(f->control[f->plays], f->def.team, now, out);
+}

@@ -81,6 +81,11 @@ void vs_image_disc(vs_image *image, double x_px, double y_px, double radius_px, 
       if (hypot(x + 0.5 - x_px, y + 0.5 - y_px) <= radius_px) put(image, x, y, colour);
 }
 
+void vs_image_box(vs_image *image, int x_px, int y_px, int width_px, int height_px, const uint8_t colour[3]) {
+  for (int y = y_px; y < y_px + height_px; y++)
+    for (int x = x_px; x < x_px + width_px; x++) put(image, x, y, colour);
+}
+
 void vs_image_line(vs_image *image, double x0_px, double y0_px, double x1_px, double y1_px, int width_px,
                    const uint8_t colour[3]) {
   if (!(fabs(x0_px) < 1e5 && fabs(y0_px) < 1e5 && fabs(x1_px) < 1e5 && fabs(y1_px) < 1e5)) return;
