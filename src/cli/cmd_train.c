@@ -13,23 +13,15 @@
 #include "cli.h"
 #include "commands.h"
 #include "run_folder.h"
+#include "train_options.h"
 #include "train_text.h"
 #include "vsss/clock.h"
 #include "vsss/journal.h"
 #include "vsss/learn.h"
 #include "vsss/number.h"
 
-typedef struct options {
-  const char *preset, *config, *run, *resume, *export, *slim, *untrained, *opponent, *reward, *reward_end, *realism,
-      *learner, *imitate, *eval_against, *eval_drive, *seed;
-  int threads, imitate_updates, eval_matches;
-  double minutes, transitions_m, checkpoint_min, eval_min, eval_m;
-  bool league;
-  vs_flag_list set, average;
-} options;
-
 typedef struct session {
-  const options *opt;
+  const train_options *opt;
   char folder[PATH_MAX - 64], command[1024];
   vs_group *group;   // NULL: alone
   atomic_bool first; // rank 0: shows, logs, saves
@@ -40,6 +32,7 @@ typedef struct session {
   vs_train_report report;
   double start_s, checkpoint_s, eval_s, line_s;
   double eval_transitions; // at which the last evaluation was
+  double kept_m;           // million transitions of the last checkpoint that is kept
   vs_drive eval_drive;
   char scores[256]; // of the last evaluation, for the policy's metadata
   vs_progress progress;
@@ -47,50 +40,6 @@ typedef struct session {
 } session;
 
 static double now_s(void) { return 1e-6 * (double)vs_clock_monotonic_us(); }
-
-// --resume names a run's folder, or a checkpoint: then a new run begins with what that one had learnt.
-static bool resumes_file(const options *o) {
-  struct stat info;
-  return o->resume && stat(o->resume, &info) == 0 && S_ISREG(info.st_mode);
-}
-
-static void checkpoint_to_resume(const options *o, char *path, size_t size) {
-  snprintf(path, size, resumes_file(o) ? "%s" : "%s/checkpoint", o->resume);
-}
-
-// Preset, then file, then flags: later ones win.
-static vs_status settings(const options *o, vs_train_def *def, vs_error *err) {
-  char checkpoint[PATH_MAX];
-  vs_status s = VS_OK;
-  if (o->resume) {
-    checkpoint_to_resume(o, checkpoint, sizeof checkpoint);
-    s = vs_train_read_def(checkpoint, def, err);
-  } else {
-    s = vs_train_def_preset(o->preset, def, err);
-  }
-  vs_config_key keys[VS_TRAIN_KEYS_MAX];
-  vs_train_schema(def, keys);
-  if (s == VS_OK && o->config) s = vs_config_load(o->config, keys, err);
-  for (int i = 0; s == VS_OK && i < o->set.count; i++) s = vs_config_set(o->set.value[i], keys, err);
-  const struct {
-    const char *key, *value;
-  } texts[] = {{"opponent", o->league ? "self=0.6,pool=0.4" : NULL},
-               {"opponent", o->opponent},
-               {"reward", o->reward},
-               {"reward_end", o->reward_end},
-               {"realism", o->realism},
-               {"learner", o->learner}};
-  for (size_t i = 0; s == VS_OK && i < sizeof texts / sizeof *texts; i++) {
-    char line[512];
-    snprintf(line, sizeof line, "%s=%s", texts[i].key, texts[i].value ? texts[i].value : "");
-    if (texts[i].value) s = vs_config_set(line, keys, err);
-  }
-  if (s == VS_OK && o->seed && !vs_parse_seed(o->seed, &def->seed))
-    s = vs_fail(err, VS_USAGE, "--seed %s: expected a whole number from 0 to 2^64-1", o->seed);
-  if (o->threads > 0) def->threads = o->threads;
-  if (o->transitions_m > 0.0) def->transitions_m = o->transitions_m;
-  return s == VS_OK ? vs_train_def_check(def, err) : s;
-}
 
 static vs_status save_checkpoint(session *s, vs_error *err) {
   char path[PATH_MAX];
@@ -184,9 +133,20 @@ static vs_status evaluate(session *s, vs_error *err) {
 }
 
 static bool evaluation_is_due(const session *s) {
-  const options *o = s->opt;
+  const train_options *o = s->opt;
   return (o->eval_min > 0.0 && now_s() - s->eval_s >= 60.0 * o->eval_min) ||
          (o->eval_m > 0.0 && s->report.transitions - s->eval_transitions >= 1e6 * o->eval_m);
+}
+
+// RUN/kept/0160019040.checkpoint: the networks as they were after so many transitions.
+static vs_status keep(session *s, vs_error *err) {
+  char path[PATH_MAX];
+  double million = s->report.transitions * 1e-6;
+  s->kept_m = floor(million / s->opt->keep_m) * s->opt->keep_m;
+  snprintf(path, sizeof path, "%s/kept", s->folder);
+  if (mkdir(path, 0777) != 0 && errno != EEXIST) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
+  snprintf(path, sizeof path, "%s/kept/%010.0f.checkpoint", s->folder, s->report.transitions);
+  return vs_train_save_slim(s->train, path, err);
 }
 
 // What rank 0 does after an update.
@@ -194,6 +154,8 @@ static vs_status record(session *s, vs_error *err) {
   vs_status status = vs_journal_add(s->journal, &s->report, err);
   if (status != VS_OK) return status;
   show(s);
+  if (s->opt->keep_m > 0.0 && s->report.transitions * 1e-6 >= s->kept_m + s->opt->keep_m) status = keep(s, err);
+  if (status != VS_OK) return status;
   if (evaluation_is_due(s)) return evaluate(s, err);
   return now_s() - s->checkpoint_s >= 60.0 * s->opt->checkpoint_min ? save(s, err) : VS_OK;
 }
@@ -228,6 +190,7 @@ static vs_status run(session *s, vs_error *err) {
   vs_status status = vs_group_any(s->group, &stop, err);
   s->start_s = s->checkpoint_s = s->eval_s = now_s();
   s->eval_transitions = vs_train_transitions(s->train);
+  if (s->opt->keep_m > 0.0) s->kept_m = floor(s->eval_transitions * 1e-6 / s->opt->keep_m) * s->opt->keep_m;
   vs_progress_start(&s->progress);
   while (status == VS_OK && !stop) {
     status = vs_train_update(s->train, &s->report, err);
@@ -241,15 +204,9 @@ static vs_status run(session *s, vs_error *err) {
   return status;
 }
 
-static bool sets_limit(const options *o) {
-  bool set = o->transitions_m > 0.0 || o->config;
-  for (int i = 0; i < o->set.count; i++) set |= strncmp(o->set.value[i], "transitions_m", 13) == 0;
-  return set;
-}
-
 // A new run from a checkpoint that is done: as long again as a run of ours is, unless the user says how long.
 static void raise_limit(session *s) {
-  if (!resumes_file(s->opt) || !vs_train_done(s->train) || sets_limit(s->opt)) return;
+  if (!train_resumes_file(s->opt) || !vs_train_done(s->train) || train_sets_limit(s->opt)) return;
   double old = vs_train_settings(s->train)->transitions_m, more = vs_train_def_default().transitions_m;
   double limit = vs_train_transitions(s->train) * 1e-6 + more;
   vs_train_go_on(s->train, limit);
@@ -274,7 +231,7 @@ static vs_status prepare(session *s, const vs_train_def *def, vs_error *err) {
   if (status == VS_OK) status = vs_train_new(def, s->group, &s->train, err);
   if (status == VS_OK && s->opt->resume) {
     char note[256];
-    checkpoint_to_resume(s->opt, path, sizeof path);
+    train_checkpoint_to_resume(s->opt, path, sizeof path);
     status = vs_train_load(s->train, path, note, err);
     if (status == VS_OK && note[0]) printf("%s\n", note);
     if (status == VS_OK) status = vs_train_average(s->train, s->opt->average.value, s->opt->average.count, err);
@@ -290,17 +247,17 @@ static vs_status prepare(session *s, const vs_train_def *def, vs_error *err) {
   return vs_journal_open(s->folder, vs_train_updates(s->train), &s->journal, err);
 }
 
-static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
+static vs_status train(const train_options *o, int argc, char **argv, vs_error *err) {
   static session s; // an interrupt may look at it until the very end
   s = (session){.opt = o, .alive = PTHREAD_MUTEX_INITIALIZER};
-  s.continued = o->resume && !resumes_file(o);
-  if (o->average.count && !resumes_file(o))
+  s.continued = o->resume && !train_resumes_file(o);
+  if (o->average.count && !train_resumes_file(o))
     return vs_fail(err, VS_USAGE, "--average begins a new run: give --resume CHECKPOINT too, and --run FOLDER");
   snprintf(s.folder, sizeof s.folder, "%s", s.continued ? o->resume : o->run);
   vs_run_folder_command(argc, argv, s.command, sizeof s.command);
   vs_train_def def;
   vs_status status = vs_cli_await_interrupts(announce_stop, save_now, &s, err);
-  if (status == VS_OK) status = settings(o, &def, err);
+  if (status == VS_OK) status = train_settings(o, &def, err);
   if (status == VS_OK) status = vs_drive_parse(o->eval_drive, &s.eval_drive, err);
   if (status == VS_OK) status = vs_group_open(&s.group, err);
   s.first = vs_group_rank(s.group) == 0;
@@ -333,13 +290,13 @@ static vs_status train(const options *o, int argc, char **argv, vs_error *err) {
 }
 
 int cmd_train(int argc, char **argv) {
-  options o = {.preset = "default",
-               .run = "runs/vsss",
-               .checkpoint_min = 5.0,
-               .imitate_updates = 40,
-               .eval_against = "random:,inf:,emc:",
-               .eval_drive = "contact",
-               .eval_matches = 20};
+  train_options o = {.preset = "default",
+                     .run = "runs/vsss",
+                     .checkpoint_min = 5.0,
+                     .imitate_updates = 40,
+                     .eval_against = "random:,inf:,emc:",
+                     .eval_drive = "contact",
+                     .eval_matches = 20};
   const vs_flag flags[] = {
       {"preset", VS_FLAG_TEXT, &o.preset, "NAME", "default (our recipe) or paper (its Table 2)", 0, 0},
       {"config", VS_FLAG_TEXT, &o.config, "FILE", "settings as an INI file", 0, 0},
@@ -358,6 +315,8 @@ int cmd_train(int argc, char **argv) {
       {"minutes", VS_FLAG_REAL, &o.minutes, "MIN", "stop after; 0: no limit", 0, 1e6},
       {"transitions", VS_FLAG_REAL, &o.transitions_m, "MILLION", "stop at; 0: as set", 0, 1e9},
       {"checkpoint-every", VS_FLAG_REAL, &o.checkpoint_min, "MIN", "minutes between checkpoints", 0.001, 1e6},
+      {"keep-every-m", VS_FLAG_REAL, &o.keep_m, "MILLION", "keep the networks after so many transitions in RUN/kept", 0,
+       1e6},
       {"eval-every", VS_FLAG_REAL, &o.eval_min, "MIN", "matches this often; 0: never", 0, 1e6},
       {"eval-every-m", VS_FLAG_REAL, &o.eval_m, "MILLION", "... or after so many transitions", 0, 1e6},
       {"eval-against", VS_FLAG_TEXT, &o.eval_against, "URIS", "... against these players", 0, 0},

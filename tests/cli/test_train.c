@@ -94,17 +94,18 @@ static void a_small_checkpoint_begins_a_new_run(void **state) {
 // The mean of two ages is another start than the later one.
 static void a_run_begins_with_the_mean_of_checkpoints(void **state) {
   (void)state;
-  train("train --run %s/old " SMALL "--transitions 0.0003 --slim %s/young");
-  train("train --resume %s/old --transitions 0.001 --slim %s/grown");
+  train("train --run %s/old " SMALL "--transitions 0.001 --slim %s/grown --keep-every-m 0.0004");
+  assert_true(exists("%s/old/kept/0000000576.checkpoint") && exists("%s/old/kept/0000000864.checkpoint"));
   train("train --run %s/w1 --resume %s/grown --transitions 0.0015");
   char alone[4096], average[512];
   snprintf(alone, sizeof alone, "%s", outcome("%s/w1/progress.csv"));
-  snprintf(average, sizeof average, "train --run %s/w2 --resume %s/grown --average %s/young --transitions 0.0015",
+  snprintf(average, sizeof average,
+           "train --run %s/w2 --resume %s/grown --average %s/old/kept/0000000576.checkpoint --transitions 0.0015",
            folder, folder, folder);
   vsss(&run, average);
   assert_int_equal(run.status, 0);
   assert_true(strcmp(alone, outcome("%s/w2/progress.csv")) != 0);
-  assert_refused(with_folder("train --resume %s/old --average %s/young"), 2, "--average begins a new run");
+  assert_refused(with_folder("train --resume %s/old --average %s/grown"), 2, "--average begins a new run");
 }
 
 // Every kind of player: what it remembers is part of the checkpoint.
