@@ -60,6 +60,7 @@ vs_status vs_hosted_frame(vs_hosted *match, vs_hosted_said *said, vs_error *err)
 int vs_hosted_broken(const vs_hosted *match); // the team whose local player broke; -1: none
 
 const vs_world *vs_hosted_world(const vs_hosted *match); // the truth; everybody sees it
+const vs_referee *vs_hosted_referee(const vs_hosted *match);
 const vs_game *vs_hosted_game(const vs_hosted *match);
 vs_phase vs_hosted_phase(const vs_hosted *match);
 const vs_ref_command *vs_hosted_call(const vs_hosted *match);                         // the referee's present word

@@ -1,4 +1,4 @@
-// vsss league: clubs play each other, everybody from both sides; goes on where it was stopped.
+// vsss league: clubs play each other, in a round robin, groups or a knockout; goes on where it was stopped.
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #include "vsss/policy.h"
 
 static const char about[] =
-    "Plays a round robin of the clubs in FILE.ini, over the network of `vsss serve` where a club is a program. After\n"
+    "Plays a league of the clubs in FILE.ini, over the network of `vsss serve` where a club is a program. After\n"
     "each match table, JSON and an HTML page are in the league's folder; run again, it goes on where it was stopped.\n"
     "A club that crashes or stays silent loses by the rules, and is named. A file:\n\n"
     "  [league]\n"
@@ -22,14 +22,10 @@ static const char about[] =
     "  name = Guests\n"
     "  command = \"./client --$VSSS_TEAM\"   # also VSSS_VISION_PORT, _COMMAND_PORT, _TEAM_PORT, _REFEREE_PORT,\n"
     "                            # _PLACEMENT_PORT; ended after the match\n\n"
+    "format = round-robin, knockout, or groups (groups = 2, advance = 2 of each go on to a knockout). A knockout match "
+    "that\n"
+    "is tied goes on to extra time and a shoot-out; seeds are in the file's order.\n\n"
     "Others: rounds, pause, wait, silence, rules, dialect, robot, drive, ports, realtime, record, seed.";
-
-static bool is_played(const league_result *r, int n, const league_result *m) {
-  for (int k = 0; k < n; k++)
-    if (r[k].round == m->round && r[k].club[VS_BLUE] == m->club[VS_BLUE] && r[k].club[VS_YELLOW] == m->club[VS_YELLOW])
-      return true;
-  return false;
-}
 
 // A URI that does not open should fail before the first match.
 static vs_status check_players(const league_file *f, vs_error *err) {
@@ -60,24 +56,18 @@ static vs_status play_one(const league_file *f, league_result *r, int *n, int of
 }
 
 static vs_status play_all(const league_file *f, vs_error *err) {
-  int of = f->rounds * f->clubs * (f->clubs - 1), n = 0;
-  league_result *r = calloc((size_t)of, sizeof *r);
+  int of = league_of(f), n = 0;
+  league_result *r = calloc((size_t)of + 1, sizeof *r), next;
   if (!r) return vs_fail(err, VS_FAIL, "out of memory for %d matches", of);
   vs_status s = league_load_results(f, r, of, &n, err);
   if (s == VS_OK && n > 0) printf("%d of %d matches are in %s\n", n, of, f->folder);
-  for (int round = 1; round <= f->rounds; round++)
-    for (int i = 0; i < f->clubs; i++)
-      for (int k = 0; k < f->clubs; k++) {
-        league_result m = {.round = round, .club = {i, k}};
-        if (i == k || s != VS_OK || vs_cli_interrupted() || is_played(r, n, &m)) continue;
-        s = play_one(f, r, &n, of, m, err);
-      }
+  while (s == VS_OK && !vs_cli_interrupted() && league_next(f, r, n, &next)) s = play_one(f, r, &n, of, next, err);
   if (n > 0) {
     printf("\n");
     league_print_table(f, r, n);
     printf("\n%s/index.html\n", f->folder);
   }
-  if (s == VS_OK && n < of) printf("stopped: %d of %d matches; run it again to go on\n", n, of);
+  if (s == VS_OK && league_next(f, r, n, &next)) printf("stopped: %d of %d matches; run it again to go on\n", n, of);
   free(r);
   return s;
 }

@@ -5,7 +5,7 @@
 #include "league.h"
 #include "vsss/config.h"
 
-enum { OWN_KEYS = 14, CLUB_KEYS = 3 };
+enum { OWN_KEYS = 17, CLUB_KEYS = 3 };
 
 static vs_status check(const char *path, league_file *f, vs_error *err) {
   int n = 0;
@@ -29,8 +29,30 @@ static vs_status check(const char *path, league_file *f, vs_error *err) {
   return n >= 2 ? VS_OK : vs_fail(err, VS_USAGE, "%s: %d club: a league has at least 2, [club1] and [club2]", path, n);
 }
 
+static vs_status check_format(const char *path, const char *format, league_file *f, vs_error *err) {
+  static const char *const names[] = {"round-robin", "knockout", "groups"};
+  int k = 0;
+  while (k < 3 && strcmp(format, names[k]) != 0) k++;
+  if (k == 3)
+    return vs_fail(err, VS_USAGE, "%s: [league] format = %s: known are round-robin, knockout and groups", path, format);
+  f->format = (league_format)k;
+  if (f->format != LEAGUE_IN_GROUPS) {
+    f->groups = f->advance = 1;
+    return VS_OK;
+  }
+  if (f->clubs < 2 * f->groups)
+    return vs_fail(err, VS_USAGE, "%s: [league] groups = %d: %d clubs are too few, a group has at least 2", path,
+                   f->groups, f->clubs);
+  if (f->advance > f->clubs / f->groups || f->advance * f->groups < 2)
+    return vs_fail(err, VS_USAGE, "%s: [league] advance = %d: of %d clubs in %d groups 1 to %d each, at least 2 in all",
+                   path, f->advance, f->clubs, f->groups, f->clubs / f->groups);
+  return VS_OK;
+}
+
 vs_status league_file_load(const char *path, league_file *f, vs_error *err) {
-  *f = (league_file){.rounds = 1,
+  *f = (league_file){.groups = 2,
+                     .advance = 2,
+                     .rounds = 1,
                      .seconds = 600,
                      .pause_s = 1,
                      .wait_s = 20,
@@ -42,7 +64,11 @@ vs_status league_file_load(const char *path, league_file *f, vs_error *err) {
                      .folder = "league",
                      .record = true,
                      .seed = 1};
+  char format[24] = "round-robin";
   vs_config_key schema[OWN_KEYS + LEAGUE_CLUBS * CLUB_KEYS + 1] = {
+      {"league.format", VS_CONFIG_TEXT, format, sizeof format, 0, 0, "round-robin, knockout or groups"},
+      {"league.groups", VS_CONFIG_INT, &f->groups, 0, 1, LEAGUE_GROUPS, "how many, of format = groups"},
+      {"league.advance", VS_CONFIG_INT, &f->advance, 0, 1, LEAGUE_CLUBS, "so many of each group go on to the knockout"},
       {"league.rounds", VS_CONFIG_INT, &f->rounds, 0, 1, 100, "each pair meets so often, from both sides each time"},
       {"league.seconds", VS_CONFIG_REAL, &f->seconds, 0, 1, 7200, "of a match"},
       {"league.pause", VS_CONFIG_REAL, &f->pause_s, 0, 0, 60, "from a call to the placing, and from there to play"},
@@ -70,5 +96,6 @@ vs_status league_file_load(const char *path, league_file *f, vs_error *err) {
     row[2] = (vs_config_key){names[i][2], VS_CONFIG_TEXT, c->command, sizeof c->command, 0, 0, "a program"};
   }
   vs_status s = vs_config_load(path, schema, err);
-  return s == VS_OK ? check(path, f, err) : s;
+  if (s == VS_OK) s = check(path, f, err);
+  return s == VS_OK ? check_format(path, format, f, err) : s;
 }

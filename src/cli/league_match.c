@@ -70,7 +70,8 @@ static vs_status prepare(const league_file *f, const league_result *m, vs_serve_
     s = vs_robot_preset_find(*f->robot ? f->robot : vs_dialect_name(def->dialect), &def->match.robot, err);
   if (s != VS_OK) return s;
   def->match.referee = vs_referee_def_default(rules);
-  def->match.referee.duration_s = f->seconds;
+  vs_referee_def_lasts(&def->match.referee, f->seconds);
+  def->match.referee.knockout = league_is_knockout(f, m);
   def->match.pause_s = f->pause_s;
   def->match.seed = vs_seed_mix(f->seed, (uint64_t)(m->round * 1000 + m->club[VS_BLUE] * 30 + m->club[VS_YELLOW]));
   def->sync = !f->realtime;
@@ -129,14 +130,21 @@ static vs_status play(const league_file *f, league_result *m, vs_serve *server, 
     s = vs_serve_frame(server, &said, NULL, 0, err);
     if (s == VS_OK && log) s = serve_record_frame(log, match, &said, err);
   }
-  memcpy(m->score, vs_hosted_game(match)->score, sizeof m->score);
+  const vs_referee *referee = vs_hosted_referee(match);
+  memcpy(m->score, referee->game.score, sizeof m->score);
+  memcpy(m->shoot_out, referee->kicks_scored, sizeof m->shoot_out);
+  m->lot = referee->lot;
   if (s != VS_OK && vs_hosted_broken(match) >= 0) { // its fault, not the league's
     forfeit(f, m, vs_hosted_broken(match), err->text);
     *err = (vs_error){0};
     s = VS_OK;
   }
-  if (m->forfeits)
-    for (int t = 0; t < VS_TEAMS; t++) m->score[t] = m->forfeits == 1 << !t ? LEAGUE_FORFEIT_GOALS : 0;
+  if (!m->forfeits) return s;
+  m->lot = 0;
+  for (int t = 0; t < VS_TEAMS; t++) {
+    m->score[t] = m->forfeits == 1 << !t ? LEAGUE_FORFEIT_GOALS : 0;
+    m->shoot_out[t] = 0;
+  }
   return s;
 }
 

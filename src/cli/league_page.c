@@ -9,57 +9,61 @@
 #include "vsss/eval.h"
 #include "vsss/file.h"
 
-typedef struct standing {
-  int club, played, won, drawn, lost, goals, against, points;
-  double elo, half_interval; // 95 %
-} standing;
+typedef struct ratings {
+  double elo[LEAGUE_CLUBS], half_interval[LEAGUE_CLUBS]; // 95 %
+} ratings;
 
-static int by_points(const void *a, const void *b) {
-  const standing *x = a, *y = b;
-  if (x->points != y->points) return y->points - x->points;
-  int dx = x->goals - x->against, dy = y->goals - y->against;
-  if (dx != dy) return dy - dx;
-  return y->goals != x->goals ? y->goals - x->goals : x->club - y->club;
-}
-
-static void standings(const league_file *f, const league_result *r, int n, standing out[LEAGUE_CLUBS]) {
-  double points[LEAGUE_CLUBS * LEAGUE_CLUBS] = {0}, rating[LEAGUE_CLUBS] = {0}, deviation[LEAGUE_CLUBS] = {0};
-  int games[LEAGUE_CLUBS * LEAGUE_CLUBS] = {0}, clubs = f->clubs;
-  memset(out, 0, sizeof(standing) * LEAGUE_CLUBS);
-  for (int i = 0; i < clubs; i++) out[i].club = i;
+// Of all matches; a shoot-out is a draw.
+static ratings rate(const league_file *f, const league_result *r, int n) {
+  double points[LEAGUE_CLUBS * LEAGUE_CLUBS] = {0}, deviation[LEAGUE_CLUBS] = {0};
+  int games[LEAGUE_CLUBS * LEAGUE_CLUBS] = {0};
+  ratings out = {{0}, {0}};
   for (int k = 0; k < n; k++)
     for (int t = 0; t < VS_TEAMS; t++) {
-      standing *s = &out[r[k].club[t]];
-      int own = r[k].score[t], other = r[k].score[!t], rival = r[k].club[!t];
-      bool both = r[k].forfeits == 3; // both lost
-      s->played++;
-      s->goals += own;
-      s->against += other;
-      s->won += own > other;
-      s->drawn += own == other && !both;
-      s->lost += own < other || both;
-      s->points += own > other ? 3 : own == other && !both ? 1 : 0;
-      points[s->club * clubs + rival] += own > other ? 1 : own == other ? 0.5 : 0;
-      games[s->club * clubs + rival]++;
+      int at = r[k].club[t] * f->clubs + r[k].club[!t], own = r[k].score[t], other = r[k].score[!t];
+      points[at] += own > other ? 1 : own == other ? 0.5 : 0;
+      games[at]++;
     }
-  vs_elo(clubs, points, games, rating);
-  vs_elo_deviations(clubs, games, rating, deviation, NULL);
+  vs_elo(f->clubs, points, games, out.elo);
+  vs_elo_deviations(f->clubs, games, out.elo, deviation, NULL);
+  for (int i = 0; i < f->clubs; i++) out.half_interval[i] = 1.96 * deviation[i];
+  return out;
+}
+
+// "2 : 2, 3 : 1 in the shoot-out"
+static void put_score(FILE *out, const league_result *m) {
+  fprintf(out, "%d : %d", m->score[VS_BLUE], m->score[VS_YELLOW]);
+  if (m->lot)
+    fprintf(out, ", by lot");
+  else if (m->shoot_out[VS_BLUE] != m->shoot_out[VS_YELLOW])
+    fprintf(out, ", %d : %d in the shoot-out", m->shoot_out[VS_BLUE], m->shoot_out[VS_YELLOW]);
+}
+
+static void print_group(const league_file *f, const league_result *r, int n, int group, const ratings *rated) {
+  league_standing s[LEAGUE_CLUBS];
+  int clubs = league_standings(f, r, n, group, s);
+  if (f->format == LEAGUE_IN_GROUPS) printf("group %c\n", 'A' + group);
+  printf("%-24s %6s %4s %4s %4s %9s %6s  %s\n", "club", "played", "won", "drew", "lost", "goals", "points",
+         "Elo [95 %]");
   for (int i = 0; i < clubs; i++) {
-    out[i].elo = rating[i];
-    out[i].half_interval = 1.96 * deviation[i];
+    double elo = rated->elo[s[i].club], half = rated->half_interval[s[i].club];
+    printf("%-24s %6d %4d %4d %4d %4d:%-4d %6d  %+.0f [%+.0f, %+.0f]\n", f->club[s[i].club].name, s[i].played, s[i].won,
+           s[i].drawn, s[i].lost, s[i].goals, s[i].against, s[i].points, elo, elo - half, elo + half);
   }
-  qsort(out, (size_t)clubs, sizeof *out, by_points);
 }
 
 void league_print_table(const league_file *f, const league_result *r, int n) {
-  standing s[LEAGUE_CLUBS];
-  standings(f, r, n, s);
-  printf("%-24s %6s %4s %4s %4s %9s %6s  %s\n", "club", "played", "won", "drew", "lost", "goals", "points",
-         "Elo [95 %]");
-  for (int i = 0; i < f->clubs; i++)
-    printf("%-24s %6d %4d %4d %4d %4d:%-4d %6d  %+.0f [%+.0f, %+.0f]\n", f->club[s[i].club].name, s[i].played, s[i].won,
-           s[i].drawn, s[i].lost, s[i].goals, s[i].against, s[i].points, s[i].elo, s[i].elo - s[i].half_interval,
-           s[i].elo + s[i].half_interval);
+  ratings rated = rate(f, r, n);
+  for (int g = 0; g < f->groups && f->format != LEAGUE_KNOCKOUT; g++) print_group(f, r, n, g, &rated);
+  for (int k = 0; k < n; k++) {
+    if (!league_is_knockout(f, &r[k])) continue;
+    printf("%-14s %s - %s  ", league_round_name(f, r[k].round), f->club[r[k].club[VS_BLUE]].name,
+           f->club[r[k].club[VS_YELLOW]].name);
+    put_score(stdout, &r[k]);
+    printf("\n");
+  }
+  int champion = league_champion(f, r, n);
+  if (champion >= 0) printf("%s has won\n", f->club[champion].name);
   for (int k = 0; k < n; k++)
     if (r[k].forfeits)
       printf("%s against %s: %s\n", f->club[r[k].club[VS_BLUE]].name, f->club[r[k].club[VS_YELLOW]].name, r[k].why);
@@ -85,30 +89,45 @@ static void put_html(FILE *out, const char *text) {
 }
 
 static void write_csv(const league_file *f, const league_result *r, int n, FILE *out) {
-  fprintf(out, "round,blue,yellow,blue_goals,yellow_goals,forfeits,why\n");
+  fprintf(out, "round,blue,yellow,blue_goals,yellow_goals,forfeits,why,blue_shoot_out,yellow_shoot_out,lot\n");
   for (int k = 0; k < n; k++) {
     char why[sizeof r->why];
     snprintf(why, sizeof why, "%s", r[k].why);
     for (char *c = why; *c; c++)
       if (*c == '\n' || *c == '"') *c = ' ';
-    fprintf(out, "%d,%s,%s,%d,%d,%d,\"%s\"\n", r[k].round, f->club[r[k].club[VS_BLUE]].name,
-            f->club[r[k].club[VS_YELLOW]].name, r[k].score[VS_BLUE], r[k].score[VS_YELLOW], r[k].forfeits, why);
+    fprintf(out, "%d,%s,%s,%d,%d,%d,\"%s\",%d,%d,%d\n", r[k].round, f->club[r[k].club[VS_BLUE]].name,
+            f->club[r[k].club[VS_YELLOW]].name, r[k].score[VS_BLUE], r[k].score[VS_YELLOW], r[k].forfeits, why,
+            r[k].shoot_out[VS_BLUE], r[k].shoot_out[VS_YELLOW], r[k].lot);
   }
 }
 
+static void put_club(FILE *out, const char *key, const league_file *f, int club) {
+  fprintf(out, "\"%s\": ", key);
+  if (club >= 0)
+    vs_json_put(out, f->club[club].name);
+  else
+    fprintf(out, "null");
+}
+
 static void write_json(const league_file *f, const league_result *r, int n, int of, FILE *out) {
-  standing s[LEAGUE_CLUBS];
-  standings(f, r, n, s);
-  fprintf(out, "{\"matches\": %d, \"of\": %d, \"table\": [", n, of);
-  for (int i = 0; i < f->clubs; i++) {
-    fprintf(out, "%s\n {\"club\": ", i ? "," : "");
-    vs_json_put(out, f->club[s[i].club].name);
-    fprintf(
-        out,
-        ", \"played\": %d, \"won\": %d, \"drawn\": %d, \"lost\": %d, \"goals\": %d, \"against\": %d, \"points\": %d, "
-        "\"elo\": %.1f, \"elo_half_interval_95\": %.1f}",
-        s[i].played, s[i].won, s[i].drawn, s[i].lost, s[i].goals, s[i].against, s[i].points, s[i].elo,
-        s[i].half_interval);
+  ratings rated = rate(f, r, n);
+  const char *separator = "";
+  fprintf(out, "{\"matches\": %d, \"of\": %d, ", n, of);
+  put_club(out, "champion", f, league_champion(f, r, n));
+  fprintf(out, ", \"table\": [");
+  for (int g = 0; g < f->groups; g++) {
+    league_standing s[LEAGUE_CLUBS];
+    int clubs = league_standings(f, r, n, g, s);
+    for (int i = 0; i < clubs; i++, separator = ",") {
+      fprintf(out, "%s\n {", separator);
+      put_club(out, "club", f, s[i].club);
+      if (f->format == LEAGUE_IN_GROUPS) fprintf(out, ", \"group\": \"%c\"", 'A' + g);
+      fprintf(out,
+              ", \"played\": %d, \"won\": %d, \"drawn\": %d, \"lost\": %d, \"goals\": %d, \"against\": %d, "
+              "\"points\": %d, \"elo\": %.1f, \"elo_half_interval_95\": %.1f}",
+              s[i].played, s[i].won, s[i].drawn, s[i].lost, s[i].goals, s[i].against, s[i].points, rated.elo[s[i].club],
+              rated.half_interval[s[i].club]);
+    }
   }
   fprintf(out, "],\n \"results\": [");
   for (int k = 0; k < n; k++) {
@@ -116,6 +135,11 @@ static void write_json(const league_file *f, const league_result *r, int n, int 
     vs_json_put(out, f->club[r[k].club[VS_BLUE]].name);
     fprintf(out, ", \"yellow\": ");
     vs_json_put(out, f->club[r[k].club[VS_YELLOW]].name);
+    if (league_is_knockout(f, &r[k])) {
+      fprintf(out, ", \"knockout\": \"%s\", \"shoot_out\": [%d, %d], ", league_round_name(f, r[k].round),
+              r[k].shoot_out[VS_BLUE], r[k].shoot_out[VS_YELLOW]);
+      put_club(out, "winner", f, league_winner(&r[k]));
+    }
     fprintf(out, ", \"score\": [%d, %d], \"forfeits\": %d, \"why\": ", r[k].score[VS_BLUE], r[k].score[VS_YELLOW],
             r[k].forfeits);
     vs_json_put(out, r[k].why);
@@ -127,7 +151,7 @@ static void write_json(const league_file *f, const league_result *r, int n, int 
 static void write_cell(const league_file *f, const league_result *r, int n, int blue, int yellow, FILE *out) {
   fprintf(out, "<td>");
   for (int k = 0; k < n; k++) {
-    if (r[k].club[VS_BLUE] != blue || r[k].club[VS_YELLOW] != yellow) continue;
+    if (r[k].club[VS_BLUE] != blue || r[k].club[VS_YELLOW] != yellow || league_is_knockout(f, &r[k])) continue;
     char log[2 * LEAGUE_TEXT];
     league_log_name(f, &r[k], log, sizeof log);
     if (f->record) fprintf(out, "<a href=\"%s\">", log);
@@ -137,41 +161,79 @@ static void write_cell(const league_file *f, const league_result *r, int n, int 
   fprintf(out, "</td>");
 }
 
-static void write_page(const league_file *f, const league_result *r, int n, int of, FILE *out) {
-  standing s[LEAGUE_CLUBS];
-  standings(f, r, n, s);
-  fprintf(
-      out,
-      "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>League</title><style>"
-      "body{font:16px sans-serif;margin:2em}table{border-collapse:collapse;margin:1em 0}"
-      "td,th{border:1px solid #bbb;padding:.3em .6em;text-align:right}td:first-child,th:first-child{text-align:left}"
-      "</style></head><body><h1>League</h1><p>%d of %d matches, %s rules, %g s each</p>\n<table><tr><th>club</th>"
-      "<th>played</th><th>won</th><th>drew</th><th>lost</th><th>goals</th><th>points</th><th>Elo</th></tr>\n",
-      n, of, f->rules, f->seconds);
-  for (int i = 0; i < f->clubs; i++) {
+static void write_group(const league_file *f, const league_result *r, int n, int group, const ratings *rated,
+                        FILE *out) {
+  league_standing s[LEAGUE_CLUBS];
+  int clubs = league_standings(f, r, n, group, s);
+  if (f->format == LEAGUE_IN_GROUPS) fprintf(out, "<h2>Group %c</h2>\n", 'A' + group);
+  fprintf(out, "<table><tr><th>club</th><th>played</th><th>won</th><th>drew</th><th>lost</th><th>goals</th>"
+               "<th>points</th><th>Elo</th></tr>\n");
+  for (int i = 0; i < clubs; i++) {
     fprintf(out, "<tr><td>");
     put_html(out, f->club[s[i].club].name);
-    fprintf(
-        out,
-        "</td><td>%d</td><td>%d</td><td>%d</td><td>%d</td><td>%d:%d</td><td>%d</td><td>%+.0f &plusmn; %.0f</td></tr>\n",
-        s[i].played, s[i].won, s[i].drawn, s[i].lost, s[i].goals, s[i].against, s[i].points, s[i].elo,
-        s[i].half_interval);
+    fprintf(out,
+            "</td><td>%d</td><td>%d</td><td>%d</td><td>%d</td><td>%d:%d</td><td>%d</td><td>%+.0f &plusmn; "
+            "%.0f</td></tr>\n",
+            s[i].played, s[i].won, s[i].drawn, s[i].lost, s[i].goals, s[i].against, s[i].points, rated->elo[s[i].club],
+            rated->half_interval[s[i].club]);
   }
   fprintf(out, "</table>\n<h2>Row as blue against column as yellow</h2><table><tr><th></th>");
   for (int i = 0; i < f->clubs; i++) {
+    if (league_group(f, i) != group) continue;
     fprintf(out, "<th>");
     put_html(out, f->club[i].name);
     fprintf(out, "</th>");
   }
   fprintf(out, "</tr>\n");
   for (int i = 0; i < f->clubs; i++) {
+    if (league_group(f, i) != group) continue;
     fprintf(out, "<tr><td>");
     put_html(out, f->club[i].name);
     fprintf(out, "</td>");
-    for (int k = 0; k < f->clubs; k++) write_cell(f, r, n, i, k, out);
+    for (int k = 0; k < f->clubs; k++)
+      if (league_group(f, k) == group) write_cell(f, r, n, i, k, out);
     fprintf(out, "</tr>\n");
   }
   fprintf(out, "</table>\n");
+}
+
+static void write_knockout(const league_file *f, const league_result *r, int n, FILE *out) {
+  int champion = league_champion(f, r, n);
+  fprintf(out, "<h2>Knockout</h2><table><tr><th>round</th><th>blue</th><th>yellow</th><th>result</th></tr>\n");
+  for (int k = 0; k < n; k++) {
+    if (!league_is_knockout(f, &r[k])) continue;
+    fprintf(out, "<tr><td>%s</td>", league_round_name(f, r[k].round));
+    for (int t = 0; t < VS_TEAMS; t++) {
+      bool won = league_winner(&r[k]) == r[k].club[t];
+      fprintf(out, won ? "<td><b>" : "<td>");
+      put_html(out, f->club[r[k].club[t]].name);
+      fprintf(out, won ? "</b></td>" : "</td>");
+    }
+    char log[2 * LEAGUE_TEXT];
+    league_log_name(f, &r[k], log, sizeof log);
+    fprintf(out, "<td>");
+    if (f->record) fprintf(out, "<a href=\"%s\">", log);
+    put_score(out, &r[k]);
+    fprintf(out, "%s%s</td></tr>\n", r[k].forfeits ? "*" : "", f->record ? "</a>" : "");
+  }
+  fprintf(out, "</table>\n");
+  if (champion < 0) return;
+  fprintf(out, "<p><b>");
+  put_html(out, f->club[champion].name);
+  fprintf(out, "</b> has won.</p>\n");
+}
+
+static void write_page(const league_file *f, const league_result *r, int n, int of, FILE *out) {
+  ratings rated = rate(f, r, n);
+  fprintf(
+      out,
+      "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>League</title><style>"
+      "body{font:16px sans-serif;margin:2em}table{border-collapse:collapse;margin:1em 0}"
+      "td,th{border:1px solid #bbb;padding:.3em .6em;text-align:right}td:first-child,th:first-child{text-align:left}"
+      "</style></head><body><h1>League</h1><p>%d of %d matches, %s rules, %g s each</p>\n",
+      n, of, f->rules, f->seconds);
+  for (int g = 0; g < f->groups && f->format != LEAGUE_KNOCKOUT; g++) write_group(f, r, n, g, &rated, out);
+  if (f->format != LEAGUE_ROUND_ROBIN) write_knockout(f, r, n, out);
   for (int k = 0; k < n; k++) {
     if (!r[k].forfeits) continue;
     fprintf(out, "<p>* ");
@@ -220,8 +282,11 @@ vs_status league_load_results(const league_file *f, league_result *r, int most, 
     line[strcspn(line, "\n")] = '\0';
     int fields = sscanf(line, "%d,%47[^,],%47[^,],%d,%d,%d,\"%159[^\"]", &m.round, blue, yellow, &m.score[VS_BLUE],
                         &m.score[VS_YELLOW], &m.forfeits, m.why);
+    const char *quote = strrchr(line, '"'); // files of before end there
+    if (quote) sscanf(quote, "\",%d,%d,%d", &m.shoot_out[VS_BLUE], &m.shoot_out[VS_YELLOW], &m.lot);
     if (fields >= 6) m.club[VS_BLUE] = club_named(f, blue), m.club[VS_YELLOW] = club_named(f, yellow);
-    if (fields < 6 || m.club[VS_BLUE] < 0 || m.club[VS_YELLOW] < 0 || m.forfeits < 0 || m.forfeits > 3 || *n == most)
+    if (fields < 6 || m.club[VS_BLUE] < 0 || m.club[VS_YELLOW] < 0 || m.forfeits < 0 || m.forfeits > 3 || m.lot < 0 ||
+        m.round < 1 || m.round > league_rounds(f) || m.lot > VS_TEAMS || *n == most)
       s = vs_fail(err, VS_FAIL,
                   "%s, line %d: '%.60s' is no result of this league: give it another folder, or remove that line", path,
                   number, line);

@@ -307,6 +307,7 @@ vs_status vs_hosted_frame(vs_hosted *m, vs_hosted_said *said, vs_error *err) {
 }
 
 const vs_world *vs_hosted_world(const vs_hosted *m) { return &m->truth; }
+const vs_referee *vs_hosted_referee(const vs_hosted *m) { return &m->referee; }
 const vs_game *vs_hosted_game(const vs_hosted *m) { return &m->referee.game; }
 vs_phase vs_hosted_phase(const vs_hosted *m) { return m->phase; }
 const vs_ref_command *vs_hosted_call(const vs_hosted *m) { return &m->call; }

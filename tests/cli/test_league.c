@@ -93,6 +93,66 @@ static void a_league_goes_on_where_it_was_stopped(void **state) {
   must_say(run.err, "line 2");
 }
 
+// Five clubs: the last two play for a place among four, the first three wait. Teams that stand still: shoot-outs and lots.
+static void a_knockout_has_byes_and_a_winner_and_goes_on_where_it_was_stopped(void **state) {
+  (void)state;
+  char ini[1024];
+  snprintf(
+      ini, sizeof ini,
+      "[league]\nformat = knockout\nseconds = 2\npause = 0\ndrive = planar\nrecord = no\nfolder = %s/cup\nports = +%d\n"
+      "[club1]\nname = A\nplayer = zero:\n[club2]\nname = B\nplayer = zero:\n[club3]\nname = C\nplayer = zero:\n"
+      "[club4]\nname = D\nplayer = emc22:\n[club5]\nname = E\nplayer = zero:\n",
+      folder, offset + 20);
+  write_file("cup.ini", ini);
+  league("cup.ini");
+  assert_int_equal(run.status, 0);
+  must_say(run.out, "quarter-final  D - E  0 : 0, ");
+  must_say(run.out, "semi-final     A - D  0 : 0, ");
+  must_say(run.out, "semi-final     B - C  0 : 0, by lot");
+  must_say(run.out, "D has won\n"); // the only one that kicks: it wins every shoot-out
+  const char *json = folder_file("cup/results.json");
+  must_say(json, "\"matches\": 4, \"of\": 4, \"champion\": \"D\"");
+  must_say(json, "\"knockout\": \"final\"");
+  must_say(json, "\"winner\": \"D\"");
+  must_say(folder_file("cup/index.html"), "<b>D</b> has won.");
+  static char whole[32768];
+  snprintf(whole, sizeof whole, "%s", folder_file("cup/results.csv"));
+  char part[32768];
+  snprintf(part, sizeof part, "%s", whole);
+  char *end = part;
+  for (int line = 0; line < 3; line++) end = strchr(end, '\n') + 1;
+  *end = '\0';
+  write_file("cup/results.csv", part);
+  league("cup.ini");
+  must_say(run.out, "2 of 4 matches are in");
+  assert_string_equal(folder_file("cup/results.csv"), whole);
+}
+
+// Two groups of two, A and C, B and D; the winners play the final.
+static void groups_are_followed_by_a_knockout(void **state) {
+  (void)state;
+  char ini[1024];
+  snprintf(ini, sizeof ini,
+           "[league]\nformat = groups\ngroups = 2\nadvance = 1\nseconds = 30\npause = 0\ndrive = planar\nrecord = no\n"
+           "folder = %s/groups\nports = +%d\n"
+           "[club1]\nname = A\nplayer = zero:\n[club2]\nname = B\nplayer = emc22:\n[club3]\nname = C\nplayer = emc22:\n"
+           "[club4]\nname = D\nplayer = zero:\n",
+           folder, offset + 20);
+  write_file("groups.ini", ini);
+  league("groups.ini");
+  assert_int_equal(run.status, 0);
+  must_say(run.out, "5 of 5  C");
+  must_say(run.out, "group A\nclub");
+  must_say(run.out, "group B\nclub");
+  must_say(run.out, "final          C - B  ");
+  must_say(run.out, " has won\n");
+  assert_null(strstr(run.out, "A - B"));
+  must_say(folder_file("groups/results.json"), "\"club\": \"C\", \"group\": \"A\"");
+  const char *page = folder_file("groups/index.html");
+  must_say(page, "<h2>Group B</h2>");
+  must_say(page, "<h2>Knockout</h2>");
+}
+
 static void what_is_wrong_with_a_file_is_named(void **state) {
   (void)state;
   const struct {
@@ -102,6 +162,10 @@ static void what_is_wrong_with_a_file_is_named(void **state) {
              {"[club1]\nname = A\nplayer = zero:\n[club2]\nname = A\nplayer = emc:\n", "another club has it"},
              {"[club1]\nname = A,B\nplayer = zero:\n[club2]\nname = C\nplayer = emc:\n", "make a name"},
              {"[club1]\nname = A\nplayer = nobody:\n[club2]\nname = C\nplayer = emc:\n", "A: "},
+             {"[league]\nformat = cup\n[club1]\nname = A\nplayer = zero:\n[club2]\nname = B\nplayer = zero:\n",
+              "format = cup: known are round-robin, knockout and groups"},
+             {"[league]\nformat = groups\n[club1]\nname = A\nplayer = zero:\n[club2]\nname = B\nplayer = zero:\n",
+              "groups = 2: 2 clubs are too few"},
              {"[league]\nmatches = 3\n", "matches"}};
   for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
     char command[256];
@@ -117,6 +181,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(clubs_meet_from_both_sides_and_who_fails_is_named),
       cmocka_unit_test(a_league_goes_on_where_it_was_stopped),
+      cmocka_unit_test(a_knockout_has_byes_and_a_winner_and_goes_on_where_it_was_stopped),
+      cmocka_unit_test(groups_are_followed_by_a_knockout),
       cmocka_unit_test(what_is_wrong_with_a_file_is_named),
   };
   vs_error err = {0};
