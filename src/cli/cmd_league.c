@@ -5,6 +5,7 @@
 #include "cli.h"
 #include "commands.h"
 #include "league.h"
+#include "own_network.h"
 #include "vsss/paths.h"
 #include "vsss/policy.h"
 
@@ -25,7 +26,9 @@ static const char about[] =
     "format = round-robin, knockout, or groups (groups = 2, advance = 2 of each go on to a knockout). A knockout match "
     "that\n"
     "is tied goes on to extra time and a shoot-out; seeds are in the file's order.\n\n"
-    "Others: rounds, pause, wait, silence, rules, dialect, robot, drive, ports, realtime, record, seed.";
+    "Others: rounds, pause, wait, silence, rules, dialect, robot, drive, ports, realtime, record, seed, own_network = "
+    "yes (the programs\n"
+    "play in a network namespace of their own, where the system allows it; with no they share the machine's network).";
 
 // A URI that does not open should fail before the first match.
 static vs_status check_players(const league_file *f, vs_error *err) {
@@ -40,6 +43,16 @@ static vs_status check_players(const league_file *f, vs_error *err) {
     vs_player_close(player);
   }
   return VS_OK;
+}
+
+// Programs that know only the standard ports, and other matches on this machine, do not meet. A league of players alone
+// needs none.
+static void enter_own_network(const league_file *f) {
+  bool programs = false;
+  vs_error why = {0};
+  for (int i = 0; i < f->clubs; i++) programs = programs || *f->club[i].command;
+  if (!f->own_network || !programs || own_network_enter(&why) == VS_OK) return;
+  fprintf(stderr, "vsss league: the programs share this machine's network: %s\n", why.text);
 }
 
 static vs_status play_one(const league_file *f, league_result *r, int *n, int of, league_result m, vs_error *err) {
@@ -83,6 +96,7 @@ int cmd_league(int argc, char **argv) {
   if (s == VS_OK && file.count != 1)
     s = vs_fail(&err, VS_USAGE, "give the league's file: vsss league FILE.ini (--help shows one)");
   if (s == VS_OK) s = league_file_load(file.value[0], &f, &err);
+  if (s == VS_OK) enter_own_network(&f);
   if (s == VS_OK) s = check_players(&f, &err);
   if (s == VS_OK) s = vs_path_make_folder(f.folder, 0777, &err);
   if (s == VS_OK) {

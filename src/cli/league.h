@@ -25,7 +25,7 @@ typedef struct league_file {
   int rounds;          // each pair meets so often, half of them... both ways
   double seconds, pause_s, wait_s, silence_s; // silence_s: silent for longer in all, a club has lost
   char rules[32], dialect[16], robot[16], drive[16], folder[LEAGUE_TEXT], ports[64];
-  bool realtime, record;
+  bool realtime, record, own_network;
   uint64_t seed;
 } league_file;
 // VS_USAGE: names file, line and key; also for a club without a name, with none or both of player and command, or whose

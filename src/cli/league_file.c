@@ -5,7 +5,7 @@
 #include "league.h"
 #include "vsss/config.h"
 
-enum { OWN_KEYS = 17, CLUB_KEYS = 3 };
+enum { OWN_KEYS = 18, CLUB_KEYS = 3 };
 
 static vs_status check(const char *path, league_file *f, vs_error *err) {
   int n = 0;
@@ -63,6 +63,7 @@ vs_status league_file_load(const char *path, league_file *f, vs_error *err) {
                      .drive = "contact",
                      .folder = "league",
                      .record = true,
+                     .own_network = true,
                      .seed = 1};
   char format[24] = "round-robin";
   vs_config_key schema[OWN_KEYS + LEAGUE_CLUBS * CLUB_KEYS + 1] = {
@@ -81,6 +82,7 @@ vs_status league_file_load(const char *path, league_file *f, vs_error *err) {
       {"league.folder", VS_CONFIG_TEXT, f->folder, sizeof f->folder, 0, 0, "of results and logs"},
       {"league.ports", VS_CONFIG_TEXT, f->ports, sizeof f->ports, 0, 0, "as --ports"},
       {"league.realtime", VS_CONFIG_BOOL, &f->realtime, 0, 0, 0, "instead of as fast as the clubs answer"},
+      {"league.own_network", VS_CONFIG_BOOL, &f->own_network, 0, 0, 0, "of the league and its programs, where allowed"},
       {"league.record", VS_CONFIG_BOOL, &f->record, 0, 0, 0, "a log of each match"},
       {"league.seed", VS_CONFIG_SEED, &f->seed, 0, 0, 0, "of players that draw"},
   };

@@ -153,6 +153,35 @@ static void groups_are_followed_by_a_knockout(void **state) {
   must_say(page, "<h2>Knockout</h2>");
 }
 
+// Its command prints what it sees of the network; in one of its own there is loopback alone.
+static void programs_play_in_a_network_of_their_own_where_allowed(void **state) {
+  (void)state;
+  for (int own = 0; own < 2; own++) {
+    char ini[1024];
+    snprintf(ini, sizeof ini,
+             "[league]\nseconds = 2\npause = 0\nwait = 1\ndrive = planar\nrecord = no\nfolder = %s/net%d\nports = +%d\n"
+             "own_network = %s\n[club1]\nname = Looks\ncommand = \"readlink /proc/self/ns/net; cat /proc/net/dev\"\n"
+             "[club2]\nname = B\nplayer = zero:\n",
+             folder, own, offset + 30, own ? "yes" : "no");
+    write_file("net.ini", ini);
+    league("net.ini");
+    assert_int_equal(run.status, 0);
+    char outside[64] = "", path[64];
+    snprintf(path, sizeof path, "net%d/1-Looks-B.log.blue.txt", own);
+    assert_true(readlink("/proc/self/ns/net", outside, sizeof outside - 1) > 0);
+    const char *seen = folder_file(path);
+    must_say(seen, "net:[");
+    if (own && strstr(run.err, "share this machine's network")) {
+      print_message("note: no network namespaces on this system\n");
+      must_say(seen, outside);
+      return;
+    }
+    assert_int_equal(strstr(seen, outside) == NULL, own);
+    must_say(seen, "lo:");
+    if (own) assert_null(strstr(seen, "eth"));
+  }
+}
+
 static void what_is_wrong_with_a_file_is_named(void **state) {
   (void)state;
   const struct {
@@ -183,6 +212,7 @@ int main(void) {
       cmocka_unit_test(a_league_goes_on_where_it_was_stopped),
       cmocka_unit_test(a_knockout_has_byes_and_a_winner_and_goes_on_where_it_was_stopped),
       cmocka_unit_test(groups_are_followed_by_a_knockout),
+      cmocka_unit_test(programs_play_in_a_network_of_their_own_where_allowed),
       cmocka_unit_test(what_is_wrong_with_a_file_is_named),
   };
   vs_error err = {0};
