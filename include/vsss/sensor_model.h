@@ -54,9 +54,6 @@ VSSS_API vs_sim_params vs_realism_draw(const vs_realism *realism, uint64_t seed)
 #define VS_SENSOR_ROBOT_ACCELERATION_MPS2  6.0
 #define VS_SENSOR_BALL_ACCELERATION_MPS2   20.0
 #define VS_SENSOR_TURN_ACCELERATION_RADPS2 200.0
-// A detection lost for longer is no longer valid (its last place is still told), as the field's tracker does.
-#define VS_SENSOR_HOLD_FRAMES 5
-
 // One match's sensors and radios. Plain data: a copy is a snapshot. Truth in, measurement out, once a frame; both
 // teams see the same camera. Latency delays the commands (camera and radio delay are one number to the policy).
 typedef struct vs_sensors {
@@ -67,12 +64,12 @@ typedef struct vs_sensors {
   double latency_s, latency_jitter_s, detection_loss, radio_loss;
   vs_range detection_burst_frames, radio_burst_frames;
   int lost_frames[VS_SENSOR_OBJECTS]; // left in this burst
-  int held_frames[VS_SENSOR_OBJECTS]; // since the last detection
+  int held_frames[VS_SENSOR_OBJECTS]; // since the last detection; what is told meanwhile: unseen.h
   int radio_lost_frames[VS_TEAMS];
   vs_kalman filter[VS_SENSOR_OBJECTS][3]; // x, y, heading of what was measured: whence the velocities
-  bool filtering[VS_SENSOR_OBJECTS];      // ... since the last restart
-  vs_world last;                          // last measurement: held where a detection is lost
-  bool have_last;
+  bool filtering[VS_SENSOR_OBJECTS];      // ... seen since the last restart
+  vs_world last;                          // each object's last measurement
+  bool ever[VS_SENSOR_OBJECTS];           // seen since the reset
   vs_wheels queue[VS_SENSOR_DELAY_FRAMES][VS_TEAMS][VS_TEAM_SIZE]; // newest first
   vs_wheels applied[VS_TEAMS][VS_TEAM_SIZE];
 } vs_sensors;
@@ -87,7 +84,8 @@ VSSS_API void vs_sensors_measure(vs_sensors *sensors, const vs_world *truth, vs_
 // After a placement: what is seen next says nothing about how fast anything moved.
 VSSS_API void vs_sensors_restart(vs_sensors *sensors);
 // Commands as decided in this frame -> commands at the robots, the mean over this frame. A delay of 1.8 frames mixes
-// the commands of one and two frames ago, 0.2 to 0.8. A team whose radio frame is lost keeps its last command.
+// the commands of one and two frames ago, 0.2 to 0.8. A team whose radio frame is lost keeps its last command. A robot that
+// is no longer seen is told to stand, as on the field.
 VSSS_API void vs_sensors_command(vs_sensors *sensors, const vs_wheels in[VS_TEAMS][VS_TEAM_SIZE],
                                  vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]);
 

@@ -8,13 +8,14 @@
 #include "vsss/detect.h"
 #include "vsss/field.h"
 #include "vsss/kalman.h"
+#include "vsss/unseen.h"
 #include "vsss/world.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-#define VS_TRACK_HOLD_US 100000
+#define VS_TRACK_HOLD_US VS_UNSEEN_HOLD_US
 
 typedef struct vs_track_def {
   vs_team team;       // ours: the robots with tags

@@ -7,6 +7,7 @@
 #include "vsss/check.h"
 #include "vsss/field.h"
 #include "vsss/geom.h"
+#include "vsss/unseen.h"
 
 #define FRAMES_PER_S 30.0
 #define NEAR_WALL_M  0.1 // detections are lost twice as often there: light falls off, walls throw shadows
@@ -43,8 +44,9 @@ static bool bursts_ok(const vs_range *frames) {
 }
 
 bool vs_sensors_ok(const vs_sensors *s) {
-  bool ok = vs_are_bools(&s->noise, 1) && vs_are_bools(&s->have_last, 1) && vs_all_finite(&s->noise_scale, 9) &&
-            bursts_ok(&s->detection_burst_frames) && bursts_ok(&s->radio_burst_frames) &&
+  bool ok = vs_are_bools(&s->noise, 1) && vs_are_bools(s->ever, VS_SENSOR_OBJECTS) &&
+            vs_all_finite(&s->noise_scale, 9) && bursts_ok(&s->detection_burst_frames) &&
+            bursts_ok(&s->radio_burst_frames) &&
             vs_all_finite(&s->queue[0][0][0].left_radps, sizeof s->queue / sizeof(double)) &&
             vs_all_finite(&s->applied[0][0].left_radps, sizeof s->applied / sizeof(double)) &&
             vs_all_finite(&s->filter[0][0].value, sizeof s->filter / sizeof(double)) &&
@@ -80,63 +82,95 @@ static bool lost(vs_sensors *s, int object, double x_m, double y_m) {
     s->lost_frames[object] = burst(&s->rng, s->detection_burst_frames);
   }
   s->lost_frames[object]--;
-  return s->have_last; // nothing to hold before the first detection
+  return true;
 }
 
-static bool still_valid(vs_sensors *s, int object, bool is_lost) {
-  s->held_frames[object] = is_lost ? s->held_frames[object] + 1 : 0;
-  return s->held_frames[object] <= VS_SENSOR_HOLD_FRAMES;
+// Since the last detection; for ever where there was none since a placement.
+static int64_t since_us(const vs_sensors *s, int object) {
+  return s->filtering[object] ? llround(1e6 / FRAMES_PER_S * s->held_frames[object]) : INT64_MAX;
 }
 
-void vs_sensors_restart(vs_sensors *s) { memset(s->filtering, 0, sizeof s->filtering); }
+void vs_sensors_restart(vs_sensors *s) {
+  memset(s->filtering, 0, sizeof s->filtering);
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
+    vs_robot *last = &s->last.robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+    last->vx_mps = last->vy_mps = last->omega_radps = 0;
+  }
+  s->last.ball.vx_mps = s->last.ball.vy_mps = 0;
+}
 
-// One more measurement of an object (a lost one is only predicted).
-static void filter(vs_sensors *s, int object, const double value[3], bool is_lost, double acceleration) {
+// One more measurement of an object. One that was out of sight for longer than it is held begins anew.
+static void filter(vs_sensors *s, int object, const double value[3], double acceleration) {
   static const double unknown_rate[3] = {1.0, 1.0, 10.0}; // m/s, m/s, rad/s
   const double noise[3] = {VS_NOISE_X_M, VS_NOISE_Y_M, VS_NOISE_HEADING_RAD};
   const double change[3] = {acceleration, acceleration, VS_SENSOR_TURN_ACCELERATION_RADPS2};
+  bool held = since_us(s, object) <= VS_UNSEEN_HOLD_US;
   for (int k = 0; k < 3; k++) {
     vs_kalman *f = &s->filter[object][k];
-    if (!s->filtering[object]) {
+    if (!held) {
       vs_kalman_start(f, value[k], noise[k], unknown_rate[k]);
       continue;
     }
-    vs_kalman_predict(f, 1.0 / FRAMES_PER_S, change[k]);
+    for (int frame = 0; frame <= s->held_frames[object]; frame++) vs_kalman_predict(f, 1.0 / FRAMES_PER_S, change[k]);
     double innovation = value[k] - f->value;
-    if (!is_lost) vs_kalman_update(f, k == 2 ? vs_wrap_rad(innovation) : innovation, noise[k]);
+    vs_kalman_update(f, k == 2 ? vs_wrap_rad(innovation) : innovation, noise[k]);
   }
-  s->filtering[object] = true;
+  s->filtering[object] = s->ever[object] = true;
+  s->held_frames[object] = 0;
+}
+
+static void measure_robot(vs_sensors *s, int team, int index, vs_robot *robot) {
+  int object = team * VS_TEAM_SIZE + index;
+  bool is_lost = lost(s, object, robot->pose.x_m, robot->pose.y_m);
+  measure_place(s, &robot->pose.x_m, &robot->pose.y_m);
+  double heading = robot->pose.theta_rad + s->bias_heading_rad + error(s, VS_NOISE_HEADING_RAD);
+  if (is_lost) {
+    s->held_frames[object]++;
+    vs_unseen_robot(&s->last.robot[team][index], 0, since_us(s, object), robot);
+    robot->pose.theta_rad = vs_wrap_rad(robot->pose.theta_rad);
+    if (!s->ever[object]) robot->pose = vs_world_parked((vs_team)team, index);
+    return;
+  }
+  robot->left_radps = robot->right_radps = 0;
+  robot->pose.theta_rad = vs_wrap_rad(heading);
+  const double pose[3] = {robot->pose.x_m, robot->pose.y_m, robot->pose.theta_rad};
+  filter(s, object, pose, VS_SENSOR_ROBOT_ACCELERATION_MPS2);
+  robot->vx_mps = s->filter[object][0].rate;
+  robot->vy_mps = s->filter[object][1].rate;
+  robot->omega_radps = s->filter[object][2].rate;
+  robot->valid = true;
+  s->last.robot[team][index] = *robot;
+}
+
+static void measure_ball(vs_sensors *s, vs_ball *ball) {
+  enum { BALL = VS_SENSOR_OBJECTS - 1 };
+  bool is_lost = lost(s, BALL, ball->x_m, ball->y_m);
+  measure_place(s, &ball->x_m, &ball->y_m);
+  if (is_lost) {
+    s->held_frames[BALL]++;
+    vs_unseen_ball(&s->last.ball, 0, since_us(s, BALL), ball);
+    if (!s->ever[BALL]) *ball = (vs_ball){.z_m = VS_BALL_RADIUS_M};
+    return;
+  }
+  const double place[3] = {ball->x_m, ball->y_m, 0};
+  filter(s, BALL, place, VS_SENSOR_BALL_ACCELERATION_MPS2);
+  ball->vx_mps = s->filter[BALL][0].rate;
+  ball->vy_mps = s->filter[BALL][1].rate;
+  ball->valid = true;
+  s->last.ball = *ball;
 }
 
 void vs_sensors_measure(vs_sensors *s, const vs_world *truth, vs_world *measured) {
   vs_world world = *truth;
-  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
-    int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE;
-    vs_robot *robot = &world.robot[team][index];
-    robot->left_radps = robot->right_radps = 0;
-    bool is_lost = lost(s, i, robot->pose.x_m, robot->pose.y_m);
-    measure_place(s, &robot->pose.x_m, &robot->pose.y_m);
-    double heading = robot->pose.theta_rad + s->bias_heading_rad + error(s, VS_NOISE_HEADING_RAD);
-    robot->pose.theta_rad = vs_wrap_rad(heading);
-    if (is_lost) *robot = s->last.robot[team][index];
-    const double pose[3] = {robot->pose.x_m, robot->pose.y_m, robot->pose.theta_rad};
-    filter(s, i, pose, is_lost, VS_SENSOR_ROBOT_ACCELERATION_MPS2);
-    robot->vx_mps = s->filter[i][0].rate;
-    robot->vy_mps = s->filter[i][1].rate;
-    robot->omega_radps = s->filter[i][2].rate;
-    robot->valid = still_valid(s, i, is_lost);
-  }
-  bool ball_lost = lost(s, VS_SENSOR_OBJECTS - 1, world.ball.x_m, world.ball.y_m);
-  measure_place(s, &world.ball.x_m, &world.ball.y_m);
-  if (ball_lost) world.ball = s->last.ball;
-  const double place[3] = {world.ball.x_m, world.ball.y_m, 0};
-  filter(s, VS_SENSOR_OBJECTS - 1, place, ball_lost, VS_SENSOR_BALL_ACCELERATION_MPS2);
-  world.ball.vx_mps = s->filter[VS_SENSOR_OBJECTS - 1][0].rate;
-  world.ball.vy_mps = s->filter[VS_SENSOR_OBJECTS - 1][1].rate;
-  world.ball.valid = still_valid(s, VS_SENSOR_OBJECTS - 1, ball_lost);
-  s->last = world;
-  s->have_last = true;
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++)
+    measure_robot(s, i / VS_TEAM_SIZE, i % VS_TEAM_SIZE, &world.robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE]);
+  measure_ball(s, &world.ball);
   *measured = world;
+}
+
+// Not in sight for longer than it is held.
+static bool out_of_sight(const vs_sensors *s, int object) {
+  return s->held_frames[object] > 0 && since_us(s, object) > VS_UNSEEN_HOLD_US;
 }
 
 static vs_wheels mix(vs_wheels a, vs_wheels b, double share_of_b) {
@@ -149,6 +183,8 @@ void vs_sensors_command(vs_sensors *s, const vs_wheels in[VS_TEAMS][VS_TEAM_SIZE
                         vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]) {
   memmove(s->queue[1], s->queue[0], sizeof s->queue - sizeof s->queue[0]);
   memcpy(s->queue[0], in, sizeof s->queue[0]);
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++)
+    if (out_of_sight(s, i)) s->queue[0][i / VS_TEAM_SIZE][i % VS_TEAM_SIZE] = (vs_wheels){0, 0};
   double latency_s = s->latency_s;
   if (s->latency_jitter_s > 0) latency_s += vs_rng_range(&s->rng, -s->latency_jitter_s, s->latency_jitter_s);
   double frames = vs_clamp(latency_s * FRAMES_PER_S, 0, VS_SENSOR_DELAY_FRAMES - 1.001);

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "vsss/geom.h"
+#include "vsss/unseen.h"
 
 // A jump beyond the gate is first refused; a second one at the same place moves the track there.
 #define GATE_M        0.06 // beyond four deviations
@@ -233,12 +234,18 @@ void vs_track_update(vs_tracker *t, const vs_calib *calib, const vs_detections *
   update_ball(t, calib, seen);
 }
 
+// Not since a placement: as if for ever.
+static int64_t since_us(const vs_object *o, int64_t now_us) { return o->seen ? now_us - o->seen_us : INT64_MAX; }
+
+// With the filters' pose where nothing moves it on.
 static void robot_at(const vs_object *o, int64_t time_us, double turn, vs_robot *out) {
-  double dt_s = o->seen ? seconds_ahead(o, time_us) : 0;
-  *out = (vs_robot){.pose = {turn * (o->x.value + dt_s * o->x.rate), turn * (o->y.value + dt_s * o->y.rate), 0},
-                    .valid = fresh(o, time_us)};
-  if (out->valid) out->vx_mps = turn * o->x.rate, out->vy_mps = turn * o->y.rate, out->omega_radps = o->theta.rate;
-  out->pose.theta_rad = o->theta.value + dt_s * o->theta.rate;
+  const vs_robot estimate = {.pose = {o->x.value, o->y.value, o->theta.value},
+                             .vx_mps = o->seen ? o->x.rate : 0,
+                             .vy_mps = o->seen ? o->y.rate : 0,
+                             .omega_radps = o->seen ? o->theta.rate : 0};
+  vs_unseen_robot(&estimate, o->time_us - o->seen_us, since_us(o, time_us), out);
+  out->pose.x_m *= turn, out->pose.y_m *= turn;
+  out->vx_mps *= turn, out->vy_mps *= turn;
 }
 
 void vs_track_world(const vs_tracker *t, int64_t time_us, vs_world *out) {

@@ -98,29 +98,69 @@ static void offset_and_scale_last_the_episode(void **state) {
   }
 }
 
-static void lost_detection_holds_the_last_place_and_ends_valid_after_five(void **state) {
+// A ball at 0.3 m/s goes on so for 100 ms, three frames, then lies where it would be; its first sights are of another loss.
+static void what_is_lost_goes_on_for_a_moment_and_then_stays_and_is_not_valid(void **state) {
+  (void)state;
+  enum { BALL = VS_SENSOR_OBJECTS - 1 };
+  vs_realism realism = silent();
+  realism.detection_loss = (vs_range){0.1, 0.1};
+  realism.detection_burst_frames = (vs_range){9, 9};
+  vs_sensors sensors;
+  vs_sensors_reset(&sensors, &realism, 2);
+  vs_world truth = truth_at_rest(), seen, last = {0};
+  int in_sight = 0, checked = 0;
+  for (int f = 0; f < 400; f++) {
+    truth.ball.x_m = 0.01 * (f % 60) - 0.3;
+    if (f % 60 == 0) { // put back by a referee
+      vs_sensors_restart(&sensors);
+      in_sight = 0;
+    }
+    vs_sensors_measure(&sensors, &truth, &seen);
+    int held = sensors.held_frames[BALL];
+    if (held == 0) {
+      assert_true(seen.ball.valid && seen.ball.x_m == truth.ball.x_m);
+      last = seen;
+      in_sight++;
+    } else if (in_sight > 10) {
+      assert_near(seen.ball.x_m, last.ball.x_m + last.ball.vx_mps * (held < 3 ? held : 3) / 30.0, 1e-6);
+      assert_near(seen.ball.x_m, last.ball.x_m + 0.01 * (held < 3 ? held : 3), 2e-3);
+      assert_int_equal(seen.ball.valid, held <= 3);
+      assert_true(held <= 3 || seen.ball.vx_mps == 0.0);
+      checked++;
+    }
+  }
+  assert_true(checked > 20);
+}
+
+static void what_was_never_seen_is_parked_and_such_robots_stand(void **state) {
   (void)state;
   vs_realism realism = silent();
   realism.detection_loss = (vs_range){0.9, 0.9};
   realism.detection_burst_frames = (vs_range){30, 30};
-  vs_sensors sensors;
-  vs_sensors_reset(&sensors, &realism, 2);
   vs_world truth = truth_at_rest(), seen;
-  vs_sensors_measure(&sensors, &truth, &seen); // nothing to hold yet: seen
-  assert_true(seen.ball.valid);
-  double held = seen.ball.x_m;
-  for (int f = 1; f <= 20; f++) {
-    truth.ball.x_m += 0.01;
+  int unseen = 0;
+  for (uint64_t seed = 0; seed < 10; seed++) {
+    vs_sensors sensors;
+    vs_sensors_reset(&sensors, &realism, seed);
     vs_sensors_measure(&sensors, &truth, &seen);
-    if (sensors.held_frames[VS_SENSOR_OBJECTS - 1] == 0) { // the first frames may have been seen
-      held = truth.ball.x_m;
-      assert_true(seen.ball.x_m == truth.ball.x_m);
-      continue;
+    vs_wheels in[VS_TEAMS][VS_TEAM_SIZE], out[VS_TEAMS][VS_TEAM_SIZE];
+    for (int i = 0; i < 6; i++) in[i / 3][i % 3] = (vs_wheels){5, 6};
+    vs_sensors_command(&sensors, (const vs_wheels(*)[VS_TEAM_SIZE])in, out);
+    for (int i = 0; i < 6; i++) {
+      const vs_robot *r = &seen.robot[i / 3][i % 3];
+      vs_pose parked = vs_world_parked((vs_team)(i / 3), i % 3);
+      bool told = sensors.held_frames[i] == 0;
+      assert_int_equal(r->valid, told);
+      assert_near(r->pose.x_m, told ? truth.robot[i / 3][i % 3].pose.x_m : parked.x_m, 1e-12);
+      assert_near(r->pose.y_m, told ? truth.robot[i / 3][i % 3].pose.y_m : parked.y_m, 1e-12);
+      assert_true(out[i / 3][i % 3].left_radps == (told ? 5 : 0));
+      assert_true(r->left_radps == 0 && r->vx_mps == 0);
+      unseen += !told;
     }
-    assert_true(seen.ball.x_m == held);
-    assert_int_equal(seen.ball.valid, sensors.held_frames[VS_SENSOR_OBJECTS - 1] <= 5);
+    if (seen.ball.valid) continue;
+    assert_true(seen.ball.x_m == 0 && seen.ball.y_m == 0);
   }
-  assert_true(sensors.held_frames[VS_SENSOR_OBJECTS - 1] > 5);
+  assert_true(unseen > 30);
 }
 
 static void losses_come_as_often_as_asked_and_twice_near_walls(void **state) {
@@ -271,7 +311,8 @@ int main(void) {
       cmocka_unit_test(without_noise_the_truth_is_seen),
       cmocka_unit_test(heading_stays_wrapped),
       cmocka_unit_test(offset_and_scale_last_the_episode),
-      cmocka_unit_test(lost_detection_holds_the_last_place_and_ends_valid_after_five),
+      cmocka_unit_test(what_is_lost_goes_on_for_a_moment_and_then_stays_and_is_not_valid),
+      cmocka_unit_test(what_was_never_seen_is_parked_and_such_robots_stand),
       cmocka_unit_test(losses_come_as_often_as_asked_and_twice_near_walls),
       cmocka_unit_test(commands_arrive_at_once_by_default),
       cmocka_unit_test(latency_is_kept_to_a_fraction_of_a_frame),
