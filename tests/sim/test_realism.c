@@ -123,6 +123,19 @@ static void the_training_file_is_read_and_delays_up_to_110_ms(void **state) {
   assert_near(r.latency_s.high, 0.11, 0);
 }
 
+static void the_file_of_the_delay_table_is_two_camera_frames_and_nothing_else(void **state) {
+  (void)state;
+  char path[512];
+  vs_realism r, noise = {0};
+  assert_ok(vs_path_find("deploy/config/delay67.ini", path, sizeof path, err));
+  assert_ok(vs_realism_load(path, &r, err));
+  assert_ok(load("noise = true\n", &noise, err));
+  assert_near(r.latency_s.low, 0.067, 0);
+  assert_near(r.latency_s.high, 0.067, 0);
+  r.latency_s = noise.latency_s;
+  assert_memory_equal(&r, &noise, sizeof r);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(default_is_the_papers_noise_only),
@@ -130,6 +143,7 @@ int main(void) {
       cmocka_unit_test(draws_lie_in_the_range_and_differ_by_seed_and_wheel),
       cmocka_unit_test(the_ideal_share_of_the_episodes_has_only_the_papers_noise),
       cmocka_unit_test(the_training_file_is_read_and_delays_up_to_110_ms),
+      cmocka_unit_test(the_file_of_the_delay_table_is_two_camera_frames_and_nothing_else),
       cmocka_unit_test(wrong_files_are_refused_with_line_and_reason),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
