@@ -39,7 +39,7 @@ $(LCM_SRC:%.c=$(B)/%.o): build/gen/lcm/.made
 endif
 
 # The league's datagrams: src/league_net/NAME.proto; protoc-c makes build/gen/league/NAME.pb-c.{c,h}.
-FEATURE_EXCLUDE += $(call choose,PROTOBUFC,src/league_net/messages.c)
+FEATURE_EXCLUDE += $(call choose,PROTOBUFC,src/league_net/messages.c) $(call choose,PROTOBUFC,src/league_net/ssl_messages.c)
 ifneq ($(HAVE_PROTOBUFC),)
 PROTO_SRC := $(wildcard src/league_net/*.proto)
 PROTO_NAMES := $(PROTO_SRC:src/league_net/%.proto=%)

@@ -1,11 +1,12 @@
-// Our team as a guest in another simulator of the league (FIRASim, TraveSim, `vsss serve`): world from its vision, wheel
-// commands to its radio, moved by the network referee: GAME ON is the go. The same control and safety as on the field; the simulator's
+// Our team as a guest in another simulator of the league (FIRASim, TraveSim, `vsss serve`) or in a hall with a shared vision
+// (SSL-Vision's messages): world from there, wheel commands to the simulator's radio or to our own robots', moved by the network referee: GAME ON is the go. The same control and safety as on the field; the simulator's
 // vision needs no tracker.
 #ifndef VSSS_GUEST_H
 #define VSSS_GUEST_H
 
 #include "vsss/net_referee.h"
 #include "vsss/safety.h"
+#include "vsss/sender.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -19,6 +20,9 @@ typedef struct vs_guest_def {
   double wheel_radius_m;                   // of the simulator's robots: 0.02 in FIRASim, 0.025 in TraveSim
   double step_s;                           // what the vision's step counts: 0.001 in FIRASim, 0.01 in TraveSim
   int vision, command, referee, placement; // ports
+  bool ssl;                                // the vision is SSL-Vision's; step_s is not used
+  bool unicast;                            // and comes to this machine's port, not to a group
+  const vs_sender_def *radio;              // commands to robots of our own; NULL: to the simulator
   bool go;                                 // play before any call was heard, as where there is no referee
   bool dry;                                // send nothing
   const char *interface;                   // NULL: loopback

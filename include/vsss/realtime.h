@@ -15,6 +15,9 @@ extern "C" {
 // /etc/security/limits.d that allow it; everything goes on as before.
 vs_status vs_realtime_try(int priority, vs_error *err);
 
+// Sleeps of the calling thread end when they should, not up to 50 us later as Linux otherwise lets them. Nothing elsewhere.
+void vs_realtime_fine_timers(void);
+
 #ifdef __cplusplus
 }
 #endif

@@ -5,6 +5,9 @@
 #include <sched.h>
 #include <string.h>
 #include <sys/mman.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 
 vs_status vs_realtime_try(int priority, vs_error *err) {
   int low = sched_get_priority_min(SCHED_FIFO), high = sched_get_priority_max(SCHED_FIFO);
@@ -23,4 +26,10 @@ vs_status vs_realtime_try(int priority, vs_error *err) {
                    "'@vsss - memlock unlimited' and log in again",
                    strerror(errno));
   return VS_OK;
+}
+
+void vs_realtime_fine_timers(void) {
+#ifdef __linux__
+  prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+#endif
 }

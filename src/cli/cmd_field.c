@@ -36,7 +36,9 @@ static const char about[] =
 static vs_status parse(int argc, char **argv, options *o, vs_error *err) {
   *o = (options){.seed = 1};
   char camera_help[256];
-  snprintf(camera_help, sizeof camera_help, "%s, firasim: or travesim: (a simulator's world)", vs_camera_sources());
+  snprintf(camera_help, sizeof camera_help,
+           "%s, firasim:, travesim: (a simulator's world), ssl:[PORT] or vss-vision:PORT (a shared vision)",
+           vs_camera_sources());
   const vs_flag flags[] = {
       {"camera", VS_FLAG_TEXT, &o->camera, "SOURCE", camera_help, 0, 0},
       {"radio", VS_FLAG_TEXT, &o->radio, "DEVICE", "serial device of the robots' radio, or firasim:, travesim:", 0, 0},
@@ -272,8 +274,13 @@ int cmd_field(int argc, char **argv) {
   if (field_guest_is(o.camera) || field_guest_is(o.radio)) {
     const vs_field_def *def = &config.def;
     vs_cli_catch_interrupts();
+    vs_cli_before_the_end(vs_sender_last_stop);
+    vs_sender_stop_at_crash();
     if (o.rt) vs_cli_realtime(o.rt);
-    const field_guest guest = {.camera = o.camera,
+    vs_sender_def sender = {.device = o.radio, .baud = def->baud, .key = def->key, .wire = def->wire};
+    memcpy(sender.id, def->radio_id, sizeof sender.id);
+    const field_guest guest = {.sender = &sender,
+                               .camera = o.camera,
                                .radio = o.radio,
                                .policy = def->policy,
                                .team = def->team,

@@ -44,7 +44,7 @@ vs_status replay_publish(vs_bus_log *log, const vs_flag_list *wanted, const char
 
 int cmd_replay(int argc, char **argv) {
   replay_def def = {.show = true};
-  const char *video = NULL, *url = NULL;
+  const char *video = NULL, *url = NULL, *mcap = NULL;
   bool publish = false, check = false;
   double speed = 1.0;
   int fps = 30;
@@ -52,6 +52,8 @@ int cmd_replay(int argc, char **argv) {
       {"channel", VS_FLAG_LIST, &def.wanted, "NAME", "show every message of this channel; repeatable", 0, 0},
       {"json", VS_FLAG_SWITCH, &def.json, NULL, "one JSON object per line, the summary last", 0, 0},
       {"video", VS_FLAG_TEXT, &video, "FILE", "draw it into a video, such as out.mp4", 0, 0},
+      {"mcap", VS_FLAG_TEXT, &mcap, "FILE", "export worlds, commands and events for Foxglove-like tools, as out.mcap",
+       0, 0},
       {"fps", VS_FLAG_INT, &fps, "N", "pictures per second of the video", 1, 120},
       {"publish", VS_FLAG_SWITCH, &publish, NULL, "send the messages again, as they came", 0, 0},
       {"check", VS_FLAG_SWITCH, &check, NULL, "of 'field --record': compute all again; the same commands, bit for bit?",
@@ -67,8 +69,8 @@ int cmd_replay(int argc, char **argv) {
       "Shows a log of lcm-logger or of 'field --record': the referee's events, the score and what it holds.", flags,
       &words, &help, &err);
   if (s == VS_OK && help) return 0;
-  if (s == VS_OK && (video != NULL) + publish + check > 1)
-    s = vs_fail(&err, VS_USAGE, "--video, --publish, --check: choose one");
+  if (s == VS_OK && (video != NULL) + (mcap != NULL) + publish + check > 1)
+    s = vs_fail(&err, VS_USAGE, "--video, --mcap, --publish, --check: choose one");
   if (s == VS_OK && words.count != 1)
     s = vs_fail(&err, VS_USAGE, "expected one log file, such as 'vsss replay lcmlog-2026-11-22.00'");
   vs_bus_log *log = NULL;
@@ -83,7 +85,7 @@ int cmd_replay(int argc, char **argv) {
     return s == VS_OK ? 0 : vs_cli_error("replay", &err);
   }
   replay_summary *summary = calloc(1, sizeof *summary);
-  def.show = !publish && !video;
+  def.show = !publish && !video && !mcap;
   s = summary ? replay_scan(log, &def, summary, &err) : vs_fail(&err, VS_FAIL, "out of memory");
   // What came before a damaged place is used all the same; the passes below stop there with the same error.
   if (summary && summary->events) {
@@ -92,6 +94,8 @@ int cmd_replay(int argc, char **argv) {
                   words.value[0], def.wanted.value[0]);
     else if (video)
       s = replay_video(log, summary, video, fps, &err);
+    else if (mcap)
+      s = replay_mcap(log, summary, mcap, &err);
     else if (publish)
       s = replay_publish(log, &def.wanted, url, speed, &err);
     else

@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli.h"
@@ -11,6 +12,7 @@
 #include "vsss/guest.h"
 #include "vsss/robot_preset.h"
 #include "vsss/serve.h"
+#include "vsss/ssl_vision.h"
 #include "world_csv.h"
 
 const char *field_guest_rest(const char *source, vs_dialect *dialect) {
@@ -24,12 +26,47 @@ const char *field_guest_rest(const char *source, vs_dialect *dialect) {
   return NULL;
 }
 
-bool field_guest_is(const char *source) {
-  vs_dialect unused;
-  return source && field_guest_rest(source, &unused);
+static const char *shared_rest(const char *source, bool *unicast) {
+  static const char *const name[] = {"ssl:", "vss-vision:"};
+  for (int k = 0; source && k < 2; k++) {
+    *unicast = k == 1;
+    if (strncmp(source, name[k], strlen(name[k])) == 0) return source + strlen(name[k]);
+  }
+  return NULL;
 }
 
-static vs_status fill(const field_guest *o, vs_guest_def *def, vs_error *err) {
+bool field_guest_is(const char *source) {
+  vs_dialect unused;
+  bool unicast;
+  return source && (field_guest_rest(source, &unused) || shared_rest(source, &unicast));
+}
+
+// A shared vision: its port, and to whom the commands go.
+static vs_status fill_shared(const field_guest *o, const char *rest, bool unicast, vs_guest_def *def, vs_error *err) {
+  vs_dialect dialect = VS_DIALECT_FIRASIM;
+  vs_ports ports = vs_ports_default();
+  const char *simulator = o->radio ? field_guest_rest(o->radio, &dialect) : NULL;
+  char *end = NULL;
+  long port = *rest ? strtol(rest, &end, 10) : unicast ? 0 : VS_SSL_PORT;
+  if ((end && *end) || port < 1024 || port > 65535)
+    return vs_fail(err, VS_USAGE, "--camera %.60s: expected %s, 1024 to 65535", o->camera,
+                   unicast ? "vss-vision:PORT" : "ssl: or ssl:PORT");
+  vs_status s = simulator && *simulator ? vs_ports_parse(simulator, &ports, err) : VS_OK;
+  const vs_robot_preset *robot;
+  if (s == VS_OK) s = vs_robot_preset_find(vs_dialect_name(dialect), &robot, err);
+  if (s != VS_OK) return s;
+  *def = (vs_guest_def){.wheel_radius_m = robot->wheel_radius_m,
+                        .ssl = true,
+                        .unicast = unicast,
+                        .vision = (int)port,
+                        .command = dialect == VS_DIALECT_TRAVESIM ? ports.team[o->team] : ports.command,
+                        .referee = ports.referee,
+                        .placement = ports.placer,
+                        .radio = simulator || !o->radio ? NULL : o->sender};
+  return VS_OK;
+}
+
+static vs_status fill_simulator(const field_guest *o, vs_guest_def *def, vs_error *err) {
   vs_dialect dialect = VS_DIALECT_FIRASIM, radio = VS_DIALECT_FIRASIM;
   vs_ports ports = vs_ports_default(), radio_ports;
   const vs_robot_preset *robot;
@@ -37,7 +74,8 @@ static vs_status fill(const field_guest *o, vs_guest_def *def, vs_error *err) {
              *radio_rest = o->radio ? field_guest_rest(o->radio, &radio) : "";
   if (!rest)
     return vs_fail(err, VS_USAGE,
-                   "--radio %.60s needs --camera firasim: or travesim: (its robots are seen nowhere else)", o->radio);
+                   "--radio %.60s needs --camera firasim:, travesim: or ssl: (its robots are seen nowhere else)",
+                   o->radio);
   if (!radio_rest || (o->radio && radio != dialect))
     return vs_fail(err, VS_USAGE, "--camera %.60s needs --radio %s: (or none: a dry run)", o->camera,
                    vs_dialect_name(dialect));
@@ -50,18 +88,27 @@ static vs_status fill(const field_guest *o, vs_guest_def *def, vs_error *err) {
   if (s == VS_OK) s = vs_robot_preset_find(vs_dialect_name(dialect), &robot, err);
   if (s != VS_OK) return s;
   bool travesim = dialect == VS_DIALECT_TRAVESIM;
-  *def = (vs_guest_def){.policy = o->policy,
-                        .team = o->team,
-                        .seed = o->seed,
-                        .duration_s = o->duration_s,
-                        .wheel_radius_m = robot->wheel_radius_m,
+  *def = (vs_guest_def){.wheel_radius_m = robot->wheel_radius_m,
                         .step_s = travesim ? 0.01 : 0.001,
                         .vision = ports.vision,
                         .command = travesim ? radio_ports.team[o->team] : radio_ports.command,
                         .referee = ports.referee,
-                        .placement = ports.placer,
-                        .dry = !o->radio};
+                        .placement = ports.placer};
   return VS_OK;
+}
+
+static vs_status fill(const field_guest *o, vs_guest_def *def, vs_error *err) {
+  bool unicast;
+  const char *shared = shared_rest(o->camera, &unicast);
+  vs_status s = shared ? fill_shared(o, shared, unicast, def, err) : fill_simulator(o, def, err);
+  def->policy = o->policy;
+  def->team = o->team;
+  def->seed = o->seed;
+  def->duration_s = o->duration_s;
+  def->go = o->go;
+  def->interface = o->interface;
+  def->dry = !o->radio;
+  return s;
 }
 
 typedef struct watch {
@@ -171,8 +218,11 @@ static vs_status play_recorded(const field_guest *o, const vs_guest_def *def, vs
 }
 
 static void print_setup(const field_guest *o, const vs_guest_def *def) {
-  printf("world from %s, port %d; %s plays %s; commands to port %d%s\n", o->camera, def->vision, o->policy,
-         vs_team_name(o->team), def->command, def->dry ? ": none, a dry run (--radio firasim:)" : "");
+  printf("world from %s, port %d; %s plays %s; ", o->camera, def->vision, o->policy, vs_team_name(o->team));
+  if (def->radio)
+    printf("commands to %s\n", o->radio);
+  else
+    printf("commands to port %d%s\n", def->command, def->dry ? ": none, a dry run (--radio firasim:)" : "");
   printf("the robots %s; keys: %s\n",
          def->go ? "play, and stand when the network referee says so" : "stand until the network referee's GAME ON",
          VS_OPERATOR_KEYS);
@@ -180,7 +230,7 @@ static void print_setup(const field_guest *o, const vs_guest_def *def) {
 }
 
 vs_status field_guest_play(const field_guest *o, vs_error *err) {
-  vs_guest_def def;
+  vs_guest_def def = {0};
   vs_guest *guest = NULL;
   vs_status s = fill(o, &def, err);
   if (s == VS_OK) s = vs_guest_new(&def, &guest, err);

@@ -45,6 +45,9 @@ vs_status replay_check(vs_bus_log *log, const char *path, vs_error *err);
 // Draws the log's worlds into a video, in the time of the world.
 vs_status replay_video(vs_bus_log *log, const replay_summary *s, const char *path, int fps, vs_error *err);
 
+// Writes the log's worlds, commands and events into an MCAP file, at the times they were received.
+vs_status replay_mcap(vs_bus_log *log, const replay_summary *s, const char *path, vs_error *err);
+
 // Sends the log's messages again with the pauses they were received with, divided by speed.
 vs_status replay_publish(vs_bus_log *log, const vs_flag_list *wanted, const char *url, double speed, vs_error *err);
 

@@ -8,6 +8,7 @@
 
 #include "vsss/clock.h"
 #include "vsss/field.h"
+#include "vsss/realtime.h"
 #include "vsss/udp.h"
 
 enum { TO_LOOPBACK, TO_NETWORK, WAYS };
@@ -31,6 +32,7 @@ struct vs_serve {
   int repeats;         // left
   bool began;          // sync: nobody is waited for at real time any more
   int64_t due_us, period_us;
+  int64_t lead_us; // real time: a frame is played so much before it is due
   vs_serve_stats stats;
   char note[200];
   uint8_t bytes[VS_LEAGUE_RECEIVE_MAX];
@@ -223,13 +225,21 @@ static void wait_until(const vs_serve *s, int64_t until_us) {
   vs_udp_wait(all, 5, until_us);
 }
 
+// A frame is played a little before it is due and sent when it is: the longest that one took of late, and half as much
+// again. Commands that come meanwhile act a frame later.
+static void learn_lead(vs_serve *s, int64_t took_us) {
+  int64_t wanted_us = took_us + took_us / 2, most_us = s->period_us / 2;
+  if (wanted_us > most_us) wanted_us = most_us;
+  s->lead_us = wanted_us > s->lead_us ? wanted_us : s->lead_us - (s->lead_us - wanted_us) / 64;
+}
+
 static void listen_in_real_time(vs_serve *s) {
   int64_t now_us = vs_clock_monotonic_us();
+  if (s->due_us == 0) vs_realtime_fine_timers();
   if (s->due_us == 0 || now_us - s->due_us > 10 * s->period_us) s->due_us = now_us; // stopped and continued
-  while (now_us < s->due_us) {
-    wait_until(s, s->due_us);
+  for (int64_t until_us = s->due_us - s->lead_us; now_us < until_us; now_us = vs_clock_monotonic_us()) {
+    wait_until(s, until_us);
     listen_now(s);
-    now_us = vs_clock_monotonic_us();
   }
   listen_now(s);
 }
@@ -308,7 +318,8 @@ static void send_calls(vs_serve *s, const vs_hosted_said *said) {
 
 vs_status vs_serve_frame(vs_serve *s, vs_hosted_said *said, char *note, size_t note_size, vs_error *err) {
   s->note[0] = '\0';
-  if (s->def.sync && vs_hosted_phase(s->match) != VS_PHASE_WAIT && (s->began || vs_serve_everybody_here(s)))
+  bool at_once = s->def.sync && vs_hosted_phase(s->match) != VS_PHASE_WAIT && (s->began || vs_serve_everybody_here(s));
+  if (at_once)
     listen_for_answers(s);
   else
     listen_in_real_time(s);
@@ -316,8 +327,13 @@ vs_status vs_serve_frame(vs_serve *s, vs_hosted_said *said, char *note, size_t n
   // Open play has no beginning: it starts to hurry when its teams are here.
   if (vs_hosted_phase(s->match) != VS_PHASE_WAIT && s->def.match.mode == VS_REFEREE_OWN) s->began = true;
   watch_silence(s);
+  int64_t begun_us = vs_clock_monotonic_us();
   vs_status status = vs_hosted_frame(s->match, said, err);
   if (status != VS_OK) return status;
+  if (!at_once) {
+    learn_lead(s, vs_clock_monotonic_us() - begun_us);
+    vs_clock_sleep_until_us(s->due_us);
+  }
   // The call first: who has seen this world has then heard of it.
   if (s->def.match.mode == VS_REFEREE_OWN) send_calls(s, said);
   send_world(s);
