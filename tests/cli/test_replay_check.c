@@ -183,7 +183,7 @@ static void what_is_no_record_is_named(void **state) {
   snprintf(arguments, sizeof arguments, "replay %s --check", path);
   assert_refused(arguments, 1, "holds no VSSS_SETUP: not a record of 'vsss field --record'");
   snprintf(arguments, sizeof arguments, "replay %s --check --publish", path);
-  assert_refused(arguments, 2, "--video, --publish, --check: choose one");
+  assert_refused(arguments, 2, "--video, --mcap, --publish, --check: choose one");
 }
 
 int main(void) {
