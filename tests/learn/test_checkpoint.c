@@ -103,6 +103,7 @@ static void a_run_goes_on_from_the_mean_of_checkpoints(void **state) {
     assert_near(mean->learner.parameters[i], 0.5 * ((double)before[i] + (double)run->learner.parameters[i]), 1e-6);
   assert_memory_equal(mean->league.self[0].parameters, mean->actor, mean->league.size * sizeof(float));
   updates(mean, 1);
+  unlink(older);
   free(before);
   vs_train_free(run);
   vs_train_free(mean);
