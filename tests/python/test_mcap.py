@@ -18,6 +18,7 @@ def run(*arguments):
 
 
 @unittest.skipUnless(make_reader, "no mcap package")
+@unittest.skipUnless(os.path.exists(VSSS), "no ./vsss here")
 class Mcap(unittest.TestCase):
     def test_export_is_read_by_the_reference_reader(self):
         port = str(22000 + os.getpid() % 8000)
