@@ -113,7 +113,7 @@ tests: all $(TEST_BIN) $(EXTRA_TESTS)
 
 # With the plain flavour also the Python package's and those of an installed copy: T=python/name, T=install/name.
 test: tests $(if $(filter plain,$(FLAVOUR)),$(B)/libvsss.so)
-	@sh tests/run.sh $(B) $(T)
+	@sh tests/run.sh $(B) '$(T)'
 
 # Up to GCC 13 the leak checker takes one in 256 dynamic TLS blocks for one of a glibc before 2.25, reads its address from
 # what lies before it and dies of it ("Tracer caught signal 11"); it is told not to look for such blocks.

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Runs the built tests: run.sh BUILD_FOLDER [module/file]. One line per binary, the output of what failed; what did not check
+# Runs the built tests: run.sh BUILD_FOLDER [module/file | 'module/ ...' | '!module/ ...': all of these, or all but these].
+# One line per binary, the output of what failed; what did not check
 # anything is named as skipped, with its reason. With the plain flavour also the Python package's tests (python/NAME) and
 # those of an installed copy (install/NAME). Closes with "N passed, N failed, N skipped".
 folder=$1
@@ -7,6 +8,15 @@ only=${2:-}
 passed=0
 failed=0
 skipped=0
+
+wanted() { # short name, name
+  [ "$only" ] || return 0
+  case $only in
+  !*) case " ${only#!} " in *" ${1%%/*}/ "*) return 1 ;; esac ;;
+  */\ * | */) case " $only " in *" ${1%%/*}/ "*) ;; *) return 1 ;; esac ;;
+  *) [ "$1" = "$only" ] || [ "$2" = "$only" ] ;;
+  esac
+}
 
 one_binary() {
   start=$(date +%s.%N)
@@ -47,7 +57,7 @@ for test in "$folder"/tests/*/test_* "$folder"/tests/*/*/test_*; do
   name=${test#"$folder"/tests/}
   short=$(echo "$name" | sed 's#/test_#/#')
   [ -e "tests/$name.c" ] || continue # its source is gone
-  if [ -z "$only" ] || [ "$short" = "$only" ] || [ "$name" = "$only" ]; then one_binary "$test" "$short"; fi
+  if wanted "$short" "$name"; then one_binary "$test" "$short"; fi
 done
 if [ "$folder" = build/plain ]; then
   case $only in '' | python/*) other tests/python/run.sh "$folder" "${only#python/}" ;; esac
