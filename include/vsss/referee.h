@@ -105,6 +105,8 @@ VSSS_API vs_event vs_referee_step(vs_referee *referee, const vs_world *world, do
 VSSS_API int vs_referee_winner(const vs_referee *referee);
 // Who is off until the half ends: to be put beside the field (vs_world_beside) and left out of restarts.
 VSSS_API bool vs_referee_off(const vs_referee *referee, vs_team team, int robot);
+// ... whose wheels stand still, whatever their team commands.
+VSSS_API void vs_referee_hold_off(const vs_referee *referee, vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE]);
 // After a placement: the clocks of stillness and of fouls start anew.
 VSSS_API void vs_referee_restarted(vs_referee *referee, const vs_world *world);
 
@@ -114,6 +116,9 @@ VSSS_API void vs_referee_restarted(vs_referee *referee, const vs_world *world);
 // the rules allow, roles and headings random. Events without a placement (NONE, END, HALT) give before itself.
 VSSS_API void vs_place(vs_placement_mode mode, const vs_event *event, const vs_world *before, vs_rng *rng,
                        vs_world *out);
+
+// PAPER's poses of one team at that restart; standing at the centre for events without a placement.
+VSSS_API void vs_place_team(const vs_event *event, vs_team team, vs_pose out[VS_TEAM_SIZE]);
 
 // Puts those that are off beside the field. The others of their team move up: the last one takes the place of a missing keeper
 // (robot 0) or taker (robot 1).

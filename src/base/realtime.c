@@ -1,7 +1,6 @@
 #include "vsss/realtime.h"
 
 #include <errno.h>
-#include <pthread.h>
 #include <sched.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -32,4 +31,16 @@ void vs_realtime_fine_timers(void) {
 #ifdef __linux__
   prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
 #endif
+}
+
+int vs_realtime_plain_thread(pthread_t *out, void *(*run)(void *), void *context) {
+  pthread_attr_t plain;
+  const struct sched_param none = {0};
+  pthread_attr_init(&plain);
+  pthread_attr_setinheritsched(&plain, PTHREAD_EXPLICIT_SCHED);
+  pthread_attr_setschedpolicy(&plain, SCHED_OTHER);
+  pthread_attr_setschedparam(&plain, &none);
+  int failed = pthread_create(out, &plain, run, context);
+  pthread_attr_destroy(&plain);
+  return failed;
 }

@@ -1,12 +1,12 @@
 #include "field_overlay.h"
 
 #include <pthread.h>
-#include <sched.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 
 #include "video.h"
+#include "vsss/realtime.h"
 
 #define NICE 10 // of the thread and of ffmpeg, which it starts
 
@@ -77,18 +77,6 @@ static void *work(void *overlay) {
   return NULL;
 }
 
-static int start(field_overlay *o) {
-  pthread_attr_t plain;
-  const struct sched_param none = {0};
-  pthread_attr_init(&plain);
-  pthread_attr_setinheritsched(&plain, PTHREAD_EXPLICIT_SCHED);
-  pthread_attr_setschedpolicy(&plain, SCHED_OTHER);
-  pthread_attr_setschedparam(&plain, &none);
-  int failed = pthread_create(&o->thread, &plain, work, o);
-  pthread_attr_destroy(&plain);
-  return failed;
-}
-
 static void release(field_overlay *o) {
   pthread_cond_destroy(&o->wake);
   pthread_mutex_destroy(&o->lock);
@@ -115,7 +103,7 @@ vs_status field_overlay_open(const char *path, const vs_field *field, const vs_f
   o->clean = calloc(1, bytes_of(o));
   o->drawn = malloc(bytes_of(o));
   o->rgb = malloc(bytes_of(o));
-  if (!o->clean || !o->drawn || !o->rgb || start(o)) {
+  if (!o->clean || !o->drawn || !o->rgb || vs_realtime_plain_thread(&o->thread, work, o)) {
     release(o);
     return vs_fail(err, VS_FAIL, "%s: no memory or no thread for it", path);
   }

@@ -32,7 +32,7 @@ static void apply(const field_referee *r, vs_field *field) {
   static const vs_field_task tasks[] = {VS_FIELD_STAND, VS_FIELD_PLACE, VS_FIELD_PLAY};
   vs_field_task task = tasks[vs_net_task_of(r->net.state, r->word)];
   vs_field_set_task(field, task == VS_FIELD_PLACE && !r->has_places ? VS_FIELD_STAND : task);
-  vs_field_arm(field, r->word == VS_NET_GO || (r->word == VS_NET_UNSAID && r->net.state != VS_NET_WAITING));
+  vs_field_arm(field, vs_net_released(r->net.state, r->word));
 }
 
 void field_referee_order(field_referee *r, vs_field *field, vs_order order) {

@@ -1,5 +1,6 @@
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "field_overlay.h"
 #include "vsss/field.h"
@@ -106,8 +107,7 @@ static void draw_world(const canvas *c, const field_scene *s) {
 
 static void write_line(vs_image *image, int row, const char *text, const uint8_t colour[3]) {
   int dot = image->width >= 960 ? 3 : 2, high = 11 * dot;
-  int wide = 0;
-  for (const char *c = text; *c; c++) wide += 6 * dot;
+  int wide = 6 * dot * (int)strlen(text);
   vs_image_box(image, 0, row * high, wide + 4 * dot, high, black);
   vs_image_text(image, 2 * dot, row * high + 2 * dot, dot, text, colour);
 }

@@ -226,12 +226,6 @@ static void send_off(vs_env *env, const vs_event *said) {
   vs_sim_world(env->sim, &m->truth);
 }
 
-static void hold_off(const vs_referee *referee, vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE]) {
-  for (int t = 0; t < VS_TEAMS; t++)
-    for (int i = 0; i < VS_TEAM_SIZE; i++)
-      if (vs_referee_off(referee, (vs_team)t, i)) wheels[t][i] = (vs_wheels){0, 0};
-}
-
 vs_status vs_env_frame(vs_env *env, vs_event *event, vs_error *err) {
   match *m = &env->m;
   if (m->referee.over) return vs_fail(err, VS_USAGE, "the match is over; reset it first");
@@ -242,7 +236,7 @@ vs_status vs_env_frame(vs_env *env, vs_event *event, vs_error *err) {
   vs_sensors_command(&m->sensors, (const vs_wheels(*)[VS_TEAM_SIZE])m->wheels, arrived);
   for (int t = 0; t < VS_TEAMS; t++)
     if (env->def.own_radio[t]) memcpy(arrived[t], m->wheels[t], sizeof arrived[t]);
-  hold_off(&m->referee, arrived);
+  vs_referee_hold_off(&m->referee, arrived);
   s = vs_sim_frame(env->sim, (const vs_wheels(*)[VS_TEAM_SIZE])arrived, err);
   if (s != VS_OK) return fail_in_match(m, err);
   vs_sim_world(env->sim, &m->truth);

@@ -36,10 +36,7 @@ void vs_field_tell(vs_field *f, const vs_event *event) {
 
 // Where the robots belong at the last restart.
 static void choose_places(vs_field *f) {
-  vs_world before = {0}, placed;
-  vs_rng unused = vs_rng_make(0, 0);
-  vs_place(VS_PLACEMENT_PAPER, &f->game.last_event, &before, &unused, &placed);
-  for (int i = 0; i < VS_TEAM_SIZE; i++) f->place[i] = placed.robot[f->def.team][i].pose;
+  vs_place_team(&f->game.last_event, f->def.team, f->place);
   f->go_to = (vs_go_to){.delay_s = f->stats.latency_s};
 }
 

@@ -1,13 +1,13 @@
 #include "pictures.h"
 
 #include <pthread.h>
-#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "vsss/clock.h"
 #include "vsss/image.h"
+#include "vsss/realtime.h"
 
 enum { WIDTH_PX = 640, SHRINK_MAX = 16 }; // no wider than that; smaller still where the bytes do not fit
 
@@ -63,19 +63,6 @@ static void *send_all(void *pictures) {
   return NULL;
 }
 
-// Without real time, whatever the pipeline runs with.
-static int start(vs_pictures *p) {
-  pthread_attr_t plain;
-  const struct sched_param none = {0};
-  pthread_attr_init(&plain);
-  pthread_attr_setinheritsched(&plain, PTHREAD_EXPLICIT_SCHED);
-  pthread_attr_setschedpolicy(&plain, SCHED_OTHER);
-  pthread_attr_setschedparam(&plain, &none);
-  int failed = pthread_create(&p->thread, &plain, send_all, p);
-  pthread_attr_destroy(&plain);
-  return failed;
-}
-
 vs_status vs_pictures_new(vs_bus *bus, double hz, vs_pictures **out, vs_error *err) {
   *out = NULL;
   if (!(hz >= 0.1 && hz <= 5.0)) return vs_fail(err, VS_USAGE, "%g pictures a second: allowed are 0.1 to 5", hz);
@@ -92,7 +79,7 @@ vs_status vs_pictures_new(vs_bus *bus, double hz, vs_pictures **out, vs_error *e
   p->period_us = (int64_t)(1e6 / hz);
   pthread_mutex_init(&p->lock, NULL);
   pthread_cond_init(&p->wake, NULL);
-  if (start(p)) {
+  if (vs_realtime_plain_thread(&p->thread, send_all, p)) {
     pthread_cond_destroy(&p->wake);
     pthread_mutex_destroy(&p->lock);
     free(p);

@@ -110,13 +110,11 @@ void vs_guest_free(vs_guest *g) {
 
 // Where the referee itself would put us, always legal: told to it, and driven to.
 static void choose_places(vs_guest *g) {
-  vs_world placed;
-  vs_rng unused = vs_rng_make(0, 0);
   vs_ref_placement p = {.team = g->def.team};
-  vs_place(VS_PLACEMENT_PAPER, &g->game.last_event, &g->world, &unused, &placed);
+  vs_place_team(&g->game.last_event, g->def.team, g->place);
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     p.given[i] = true;
-    p.pose[i] = g->place[i] = placed.robot[g->def.team][i].pose;
+    p.pose[i] = g->place[i];
   }
   g->go_to = (vs_go_to){.delay_s = DELAY_S};
   if (vs_net_referee_tell(&g->referee, &p)) g->stats.placements++;
@@ -218,9 +216,8 @@ vs_status vs_guest_tick(vs_guest *g, vs_guest_tick_result *out, vs_error *err) {
   }
   if (places) vs_go_to_step(&g->go_to, &g->world, g->def.team, g->place, out->wheels);
   g->stats.decisions += decided ? 1 : 0;
-  bool released = g->word == VS_NET_GO || (g->word == VS_NET_UNSAID && g->referee.state != VS_NET_WAITING);
   vs_safety_input in = {.now_us = vs_clock_monotonic_us(),
-                        .armed = released,
+                        .armed = vs_net_released(g->referee.state, g->word),
                         .referee = plays || places ? VS_EVENT_NONE : VS_EVENT_HALT,
                         .team = g->def.team,
                         .world = &g->world,

@@ -16,6 +16,10 @@ vs_net_state vs_net_next(vs_foul foul) {
   }
 }
 
+bool vs_net_released(vs_net_state state, vs_net_word word) {
+  return word == VS_NET_GO || (word == VS_NET_UNSAID && state != VS_NET_WAITING);
+}
+
 vs_net_task vs_net_task_of(vs_net_state state, vs_net_word word) {
   if (word == VS_NET_STOP) return VS_NET_STAND;
   switch (state) {

@@ -1,5 +1,6 @@
 // Where the pieces stand at a restart, in the view of the team that kicks (it attacks +x): turned for yellow at the end.
 #include <math.h>
+#include <stddef.h>
 
 #include "referee_internal.h"
 #include "vsss/field.h"
@@ -258,6 +259,13 @@ void vs_place(vs_placement_mode mode, const vs_event *event, const vs_world *bef
     for (int i = 0; i < VS_TEAM_SIZE; i++) view.robot[t][i] = (vs_robot){.pose = pose[t][i], .valid = true};
   view.ball = (vs_ball){.x_m = r.ball_x_m, .y_m = r.ball_y_m, .z_m = VS_BALL_RADIUS_M, .valid = true};
   vs_world_for_team(&view, r.kicker, out);
+}
+
+void vs_place_team(const vs_event *event, vs_team team, vs_pose out[VS_TEAM_SIZE]) {
+  const vs_world nothing = {0};
+  vs_world placed;
+  vs_place(VS_PLACEMENT_PAPER, event, &nothing, NULL, &placed);
+  for (int i = 0; i < VS_TEAM_SIZE; i++) out[i] = placed.robot[team][i].pose;
 }
 
 void vs_place_without(const vs_referee *referee, vs_world *placed) {

@@ -202,6 +202,12 @@ static void send_off(vs_referee *r, const vs_world *world, vs_event *event, doub
 
 bool vs_referee_off(const vs_referee *r, vs_team team, int robot) { return r->idle.robot[team][robot].off; }
 
+void vs_referee_hold_off(const vs_referee *r, vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE]) {
+  for (int t = 0; t < VS_TEAMS; t++)
+    for (int i = 0; i < VS_TEAM_SIZE; i++)
+      if (vs_referee_off(r, (vs_team)t, i)) wheels[t][i] = (vs_wheels){0, 0};
+}
+
 vs_event vs_referee_step(vs_referee *referee, const vs_world *world, double dt_s) {
   vs_event event = {.kind = VS_EVENT_NONE};
   if (referee->over) return event;

@@ -117,11 +117,10 @@ bool vs_hosted_replace(vs_hosted *m, const vs_fira_packet *p) {
 
 vs_status vs_hosted_place(vs_hosted *m, const vs_ref_placement *p, vs_error *err) {
   if (m->phase != VS_PHASE_CALLED || m->control[p->team]) return VS_OK;
-  vs_world placed;
   vs_pose pose[VS_TEAM_SIZE];
-  vs_rng unused = m->rng;
-  vs_place(VS_PLACEMENT_PAPER, &m->restart, &m->truth, &unused, &placed);
-  for (int i = 0; i < VS_TEAM_SIZE; i++) pose[i] = p->given[i] ? p->pose[i] : placed.robot[p->team][i].pose;
+  vs_place_team(&m->restart, p->team, pose);
+  for (int i = 0; i < VS_TEAM_SIZE; i++)
+    if (p->given[i]) pose[i] = p->pose[i];
   vs_status s = vs_placement_check(&m->restart, p->team, pose, err);
   if (s != VS_OK) return s;
   m->placed[p->team] = true;
@@ -280,15 +279,9 @@ static vs_status decide(vs_hosted *m, vs_error *err) {
   return VS_OK;
 }
 
-static void hold_off(vs_hosted *m) {
-  for (int t = 0; t < VS_TEAMS; t++)
-    for (int i = 0; i < VS_TEAM_SIZE; i++)
-      if (vs_referee_off(&m->referee, (vs_team)t, i)) m->wheels[t][i] = (vs_wheels){0, 0};
-}
-
 vs_status vs_hosted_frame(vs_hosted *m, vs_hosted_said *said, vs_error *err) {
   vs_status s = decide(m, err);
-  hold_off(m);
+  vs_referee_hold_off(&m->referee, m->wheels);
   if (s == VS_OK) s = vs_sim_frame(m->sim, (const vs_wheels(*)[VS_TEAM_SIZE])m->wheels, err);
   if (s != VS_OK) {
     vs_fail_prefix(err, "match at %.2f s", m->referee.game.time_s);

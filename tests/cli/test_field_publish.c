@@ -1,10 +1,10 @@
 // Tests src/cli/field_publish.c through the real binary: a listener of the league's group sees what the camera sees.
 #include "field_venue.h"
+#include "test_folder.h"
 #include "vsss/field.h"
 #include "vsss/league_messages.h"
 #include "vsss/udp.h"
 
-static char folder[] = "/tmp/vsss_publish_XXXXXX";
 static int offset;
 
 // Plays until the listener has n worlds; the last one is left in e.
@@ -82,6 +82,5 @@ int main(void) {
     print_message("note: %s\n", err.text);
     return 0;
   }
-  if (!mkdtemp(folder)) return 1;
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

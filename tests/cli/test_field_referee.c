@@ -2,10 +2,10 @@
 // team with a camera and a radio, which are in the test's hands. The robots in the picture never move, so that one that
 // drives to its place never gets there.
 #include "field_venue.h"
+#include "test_folder.h"
 #include "vsss/league_messages.h"
 #include "vsss/udp.h"
 
-static char folder[] = "/tmp/vsss_netref_XXXXXX";
 static vs_udp referee;
 static int offset;
 
@@ -80,6 +80,5 @@ int main(void) {
     print_message("note: %s\n", err.text);
     return 0;
   }
-  if (!mkdtemp(folder)) return 1;
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

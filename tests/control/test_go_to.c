@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "assert_near.h"
+#include "planar_model.h"
 #include "vsss/control.h"
 #include "vsss/field.h"
 #include "vsss/geom.h"
@@ -17,21 +18,6 @@
 #define HELD    15 // frames that it must stand there
 #define DELAY   2  // frames, and
 #define NOISE_M 0.002
-
-static vs_model *model;
-
-static int open_model(void **state) {
-  (void)state;
-  vs_model_def def = vs_model_def_default(VS_DRIVE_PLANAR);
-  vs_error err = {0};
-  return vs_model_load(&def, &model, &err) == VS_OK ? 0 : -1;
-}
-
-static int close_model(void **state) {
-  (void)state;
-  vs_model_free(model);
-  return 0;
-}
 
 static const vs_event restarts[] = {
     {.kind = VS_EVENT_KICK_OFF, .team = VS_BLUE},
@@ -271,5 +257,5 @@ int main(void) {
       cmocka_unit_test(a_robot_in_a_scrum_leaves_it_without_pushing),
       cmocka_unit_test(a_robot_that_is_not_seen_stands),
   };
-  return cmocka_run_group_tests(tests, open_model, close_model);
+  return cmocka_run_group_tests(tests, load_model, free_model);
 }
