@@ -26,8 +26,8 @@ typedef enum vs_net_word { VS_NET_UNSAID, VS_NET_GO, VS_NET_STOP } vs_net_word;
 // What the robots do: GAME ON is the go, the operator's where no call was heard; the operator's STOP outlives every call.
 typedef enum vs_net_task { VS_NET_STAND, VS_NET_TO_PLACES, VS_NET_AT_PLAY } vs_net_task;
 vs_net_task vs_net_task_of(vs_net_state state, vs_net_word word);
-bool vs_net_released(vs_net_state state,
-                     vs_net_word word); // robots may move: after GO, or any call where nothing was said
+// Robots may move: after GO, and after any call where the operator said nothing.
+bool vs_net_released(vs_net_state state, vs_net_word word);
 
 // A call as an event of ours: NONE where play just stops or goes on.
 vs_event vs_net_event(const vs_ref_command *call, double time_s);
