@@ -5,6 +5,8 @@
 // placement; then STOP, and ball and robots are put where they belong (a legal placement that was sent, legal places
 // that the team drove to, or the defaults); after pause_s again GAME_ON. The match's clock runs during GAME_ON only. Local
 // players stand still but during GAME_ON.
+// A team's people may ask for a time-out: the protocol has no message for it, a person tells the referee. It is HALT on the
+// network, its team named; then the foul is called anew, since robots were carried about.
 #ifndef VSSS_HOSTED_MATCH_H
 #define VSSS_HOSTED_MATCH_H
 
@@ -17,7 +19,14 @@
 extern "C" {
 #endif
 
-typedef enum vs_phase { VS_PHASE_WAIT, VS_PHASE_CALLED, VS_PHASE_STOPPED, VS_PHASE_PLAY, VS_PHASE_OVER } vs_phase;
+typedef enum vs_phase {
+  VS_PHASE_WAIT,
+  VS_PHASE_CALLED,
+  VS_PHASE_STOPPED,
+  VS_PHASE_PLAY,
+  VS_PHASE_TIME_OUT,
+  VS_PHASE_OVER
+} vs_phase;
 const char *vs_phase_name(vs_phase phase); // "waiting", "called", ...
 
 // OWN: our rules. NONE: open play without end, goals are counted, who may place places. EXTERNAL: a referee on the
@@ -54,6 +63,12 @@ bool vs_hosted_replace(vs_hosted *match, const vs_fira_packet *packet);
 vs_status vs_hosted_place(vs_hosted *match, const vs_ref_placement *placement, vs_error *err);
 void vs_hosted_hear(vs_hosted *match, const vs_ref_command *call); // EXTERNAL only
 void vs_hosted_begin(vs_hosted *match);                            // ends VS_PHASE_WAIT: the first kick-off is called
+
+// A time-out (vs_time_outs_by says how many, how long): at once where play is stopped, else at its next stop. VS_FAIL with
+// the reason: none left, asked for already, the match has not begun or is over, another referee is in charge.
+vs_status vs_hosted_time_out(vs_hosted *match, vs_team team, vs_error *err);
+bool vs_hosted_ready(vs_hosted *match, vs_team team); // ends the team's own before its time; false: has none
+int vs_hosted_time_outs_taken(const vs_hosted *match, vs_team team); // the present one too, one that is waited for not
 
 // One frame of 1 / frame_hz. VS_FAIL: a local player or the simulator broke.
 vs_status vs_hosted_frame(vs_hosted *match, vs_hosted_said *said, vs_error *err);

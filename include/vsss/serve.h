@@ -39,6 +39,7 @@ typedef struct vs_serve_def {
   const char *interface; // NULL: loopback only
   bool sync;             // a frame as soon as all teams have answered the last, instead of at real time
   double answer_s;       // sync: a team that takes longer is no longer waited for until it is heard again
+  bool (*ends)(void);    // asked while it waits for answers: true ends the waiting; NULL: never
 } vs_serve_def;
 vs_serve_def vs_serve_def_default(void);
 

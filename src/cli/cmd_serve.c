@@ -3,11 +3,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "commands.h"
 #include "json_text.h"
 #include "match_flags.h"
 #include "message_text.h"
+#include "operator.h"
 #include "serve_record.h"
 #include "vsss/clock.h"
 #include "vsss/serve.h"
@@ -17,13 +19,14 @@ typedef struct serve_command {
   const char *dialect, *rules, *referee, *ports, *interface, *robot, *drive, *record;
   double seconds, pause_s, wait_s, answer_s;
   int seed, rt;
-  bool no_referee, sync, realtime, json;
+  bool no_referee, knockout, sync, realtime, json;
 
   vs_serve_def def;
   vs_model *model;
   vs_serve *server;
   serve_record *log;
   vs_progress progress;
+  vs_operator keys;
   int64_t start_us;
 } serve_command;
 
@@ -40,7 +43,8 @@ static vs_status read_rules(serve_command *c, vs_error *err) {
   if (s != VS_OK) return s;
   vs_hosted_def *match = &c->def.match;
   match->referee = vs_referee_def_default(rules);
-  if (c->seconds > 0) match->referee.duration_s = c->seconds;
+  if (c->seconds > 0) vs_referee_def_lasts(&match->referee, c->seconds);
+  match->referee.knockout = c->knockout;
   match->pause_s = c->pause_s;
   match->seed = (uint64_t)c->seed;
   if (!strcmp(c->referee, "external"))
@@ -50,6 +54,8 @@ static vs_status read_rules(serve_command *c, vs_error *err) {
   if (c->no_referee && match->mode == VS_REFEREE_EXTERNAL)
     return vs_fail(err, VS_USAGE, "--no-referee and --referee external exclude each other");
   if (c->no_referee) match->mode = VS_REFEREE_NONE;
+  if (c->knockout && match->mode != VS_REFEREE_OWN)
+    return vs_fail(err, VS_USAGE, "--knockout: extra time and a shoot-out are called by our own referee only");
   return VS_OK;
 }
 
@@ -68,6 +74,7 @@ static vs_status prepare(serve_command *c, vs_error *err) {
   c->def.interface = c->interface;
   c->def.sync = c->sync;
   c->def.answer_s = c->answer_s;
+  c->def.ends = vs_cli_interrupted;
   vs_model_def model = vs_model_def_default(drive);
   model.frame_hz = vs_dialect_hz(c->def.dialect);
   model.substeps_per_frame = c->def.dialect == VS_DIALECT_TRAVESIM ? 2 : 3; // about 5 ms, as in sim
@@ -79,8 +86,8 @@ static vs_status prepare(serve_command *c, vs_error *err) {
 static void print_head(const serve_command *c) {
   if (c->json) return;
   const vs_ports *p = &c->def.ports;
-  printf("%s (blue) against %s (yellow), %s rules, %s robots\n", c->uri[VS_BLUE], c->uri[VS_YELLOW], c->rules,
-         c->def.match.robot->name);
+  printf("%s (blue) against %s (yellow), %s rules%s, %s robots\n", c->uri[VS_BLUE], c->uri[VS_YELLOW], c->rules,
+         c->knockout ? ", knockout" : "", c->def.match.robot->name);
   printf("world      to   %s:%d, %d a second of play\n", VS_VISION_GROUP, p->vision, vs_dialect_hz(c->def.dialect));
   const char *here = c->interface ? "0.0.0.0" : "127.0.0.1";
   if (c->def.dialect == VS_DIALECT_TRAVESIM)
@@ -90,9 +97,52 @@ static void print_head(const serve_command *c) {
     printf("commands   on   %s:%d\n", here, p->command);
   if (c->def.match.mode == VS_REFEREE_OWN)
     printf("referee    to   %s:%d; placements on %d\n", VS_REFEREE_GROUP, p->referee, p->placer);
+  vs_time_outs by = vs_time_outs_by(c->def.match.referee.rules);
+  if (c->def.match.mode == VS_REFEREE_OWN && by.number > 0 && isatty(STDIN_FILENO))
+    printf("time-outs  b (blue), y (yellow): %d of %g s each, at the next stop of play; the same key ends one\n",
+           by.number, by.length_s);
   if (c->def.match.mode == VS_REFEREE_EXTERNAL) printf("referee    from %s:%d\n", VS_REFEREE_GROUP, p->referee);
   printf("\n");
   fflush(stdout);
+}
+
+static void print_line(serve_command *c, const char *text) {
+  if (c->json) return;
+  vs_progress_clear(&c->progress);
+  printf("%7.2f s  %s\n", vs_hosted_game(vs_serve_match(c->server))->time_s, text);
+  fflush(stdout);
+}
+
+// A team's key asks for its time-out, and ends it.
+static void obey_keys(serve_command *c) {
+  char typed[16];
+  int n = vs_operator_typed(&c->keys, typed, sizeof typed);
+  for (int k = 0; k < n; k++) {
+    vs_hosted *match = vs_serve_match(c->server);
+    vs_team team = typed[k] == 'y' ? VS_YELLOW : VS_BLUE;
+    vs_error why = {0};
+    char line[96];
+    if (typed[k] != 'b' && typed[k] != 'y') continue;
+    if (vs_hosted_ready(match, team))
+      snprintf(line, sizeof line, "%s is ready", vs_team_name(team));
+    else if (vs_hosted_time_out(match, team, &why) == VS_OK)
+      snprintf(line, sizeof line, "%s asks for a time-out", vs_team_name(team));
+    else
+      snprintf(line, sizeof line, "%.90s", why.text);
+    print_line(c, line);
+  }
+}
+
+// The time-out that has just begun.
+static void print_time_out(serve_command *c, const vs_hosted_said *said) {
+  const vs_hosted *match = vs_serve_match(c->server);
+  if (said->calls == 0 || vs_hosted_phase(match) != VS_PHASE_TIME_OUT) return;
+  vs_team team = (vs_team)vs_hosted_call(match)->team;
+  vs_time_outs by = vs_time_outs_by(c->def.match.referee.rules);
+  char line[96];
+  snprintf(line, sizeof line, "time-out of %s, %d of %d: %g s, '%c' ends it", vs_team_name(team),
+           vs_hosted_time_outs_taken(match, team), by.number, by.length_s, vs_team_name(team)[0]);
+  print_line(c, line);
 }
 
 static void print_frame(serve_command *c, const vs_hosted_said *said, const char *note) {
@@ -126,6 +176,8 @@ static vs_status play(serve_command *c, vs_error *err) {
     if (s == VS_OK && c->log) s = serve_record_frame(c->log, match, &said, err);
     if (s != VS_OK) break;
     print_frame(c, &said, note);
+    print_time_out(c, &said);
+    obey_keys(c);
     // Without our rules nobody else ends the match.
     played_s = vs_hosted_game(match)->time_s;
     if (c->def.match.mode != VS_REFEREE_OWN && c->seconds > 0 && played_s >= c->seconds) break;
@@ -141,9 +193,20 @@ static void print_team(FILE *out, const serve_command *c, vs_team team) {
   fprintf(out,
           ", \"heard\": %s, \"packets\": %" PRId64 ", \"commands\": %" PRId64 ", \"saturated\": %" PRId64
           ", \"placements\": %" PRId64 ", \"illegal_placements\": %" PRId64 ", \"silences\": %" PRId64
-          ", \"silent_s\": %.2f}",
+          ", \"silent_s\": %.2f, \"time_outs\": %d}",
           t->heard ? "true" : "false", t->packets, t->commands, t->saturated, t->placements, t->illegal_placements,
-          t->silences, t->silent_s);
+          t->silences, t->silent_s, vs_hosted_time_outs_taken(vs_serve_match(c->server), team));
+}
+
+// How a knockout match ended: "none" while it has not.
+static void print_knockout(const serve_command *c) {
+  const vs_referee *r = vs_hosted_referee(vs_serve_match(c->server));
+  int winner = vs_referee_winner(r);
+  printf(" \"knockout\": {\"winner\": \"%s\", \"extra_time\": %s, \"kicks\": [%d, %d], \"kicks_scored\": [%d, %d], "
+         "\"lot\": %s},\n",
+         winner < 0 ? "none" : vs_team_name((vs_team)winner), r->half >= VS_HALF_EXTRA_1 ? "true" : "false",
+         r->kicks[VS_BLUE], r->kicks[VS_YELLOW], r->kicks_scored[VS_BLUE], r->kicks_scored[VS_YELLOW],
+         r->lot ? "true" : "false");
 }
 
 static void print_json(const serve_command *c, double wall_s) {
@@ -155,6 +218,7 @@ static void print_json(const serve_command *c, double wall_s) {
   printf(" \"complete\": %s, \"score\": [%d, %d], \"time_s\": %.3f, \"hash\": \"%016" PRIx64 "\",\n",
          vs_hosted_phase(match) == VS_PHASE_OVER ? "true" : "false", game->score[VS_BLUE], game->score[VS_YELLOW],
          game->time_s, vs_hosted_hash(match));
+  if (c->knockout) print_knockout(c);
   printf(" ");
   print_team(stdout, c, VS_BLUE);
   printf(",\n ");
@@ -178,6 +242,10 @@ static void print_end(const serve_command *c) {
   const vs_game *game = vs_hosted_game(vs_serve_match(c->server));
   printf("\n%s %d : %d %s after %.1f s\n", c->uri[VS_BLUE], game->score[VS_BLUE], game->score[VS_YELLOW],
          c->uri[VS_YELLOW], game->time_s);
+  const vs_referee *referee = vs_hosted_referee(vs_serve_match(c->server));
+  if (referee->half == VS_HALF_SHOOT_OUT)
+    printf("shoot-out %d : %d%s\n", referee->kicks_scored[VS_BLUE], referee->kicks_scored[VS_YELLOW],
+           referee->lot ? ", by lot" : "");
   for (int t = 0; t < VS_TEAMS; t++) {
     const vs_team_traffic *p = &s->team[t];
     if (c->def.match.player[t]) continue;
@@ -218,6 +286,7 @@ int cmd_serve(int argc, char **argv) {
        0},
       {"referee", VS_FLAG_TEXT, &c.referee, "NAME", "own, or external: obey a VSSReferee", 0, 0},
       {"no-referee", VS_FLAG_SWITCH, &c.no_referee, NULL, "goals are counted, who may place places", 0, 0},
+      {"knockout", VS_FLAG_SWITCH, &c.knockout, NULL, "a tie is followed by extra time and a shoot-out", 0, 0},
       {"pause", VS_FLAG_REAL, &c.pause_s, "S", "from the call to the placing, and from there to play", 0, 60},
       {"wait", VS_FLAG_REAL, &c.wait_s, "S", "for the teams of the network, then start without them", 0, 86400},
       {"seconds", VS_FLAG_REAL, &c.seconds, "S", "of play; 0: the rules' (without own referee: until Ctrl-C)", 0, 7200},
@@ -249,7 +318,9 @@ int cmd_serve(int argc, char **argv) {
     if (c.rt) vs_cli_realtime(c.rt);
     vs_progress_start(&c.progress);
     print_head(&c);
-    s = play(&c, &err);
+    s = vs_operator_open(NULL, &c.keys, &err);
+    if (s == VS_OK) s = play(&c, &err);
+    vs_operator_close(&c.keys);
     print_end(&c);
   }
   serve_record_close(c.log);

@@ -75,6 +75,7 @@ static vs_status prepare(const league_file *f, const league_result *m, vs_serve_
   def->match.pause_s = f->pause_s;
   def->match.seed = vs_seed_mix(f->seed, (uint64_t)(m->round * 1000 + m->club[VS_BLUE] * 30 + m->club[VS_YELLOW]));
   def->sync = !f->realtime;
+  def->ends = vs_cli_interrupted;
   for (int t = 0; t < VS_TEAMS; t++) {
     const char *uri = f->club[m->club[t]].player;
     def->match.player[t] = *uri ? uri : NULL;

@@ -17,11 +17,13 @@ static void give_back(void) {
   changed = 0;
 }
 
+// A program in the background may not touch the terminal: it would be stopped.
+static int in_foreground(void) { return isatty(STDIN_FILENO) && tcgetpgrp(STDIN_FILENO) == getpgrp(); }
+
 static void take_keys(void) {
   static int registered;
   struct termios now;
-  // A program in the background may not touch the terminal: it would be stopped.
-  if (!isatty(STDIN_FILENO) || tcgetpgrp(STDIN_FILENO) != getpgrp() || tcgetattr(STDIN_FILENO, &before) != 0) return;
+  if (!in_foreground() || tcgetattr(STDIN_FILENO, &before) != 0) return;
   now = before;
   now.c_lflag &= ~(tcflag_t)(ICANON | ECHO);
   changed = tcsetattr(STDIN_FILENO, TCSANOW, &now) == 0;
@@ -84,4 +86,11 @@ vs_order vs_operator_poll(vs_operator *o, char *unknown) {
       o->word[o->used++] = bytes[i];
   }
   return order;
+}
+
+int vs_operator_typed(vs_operator *o, char *out, int size) {
+  if (o->keys < 0 || !in_foreground()) return 0;
+  int n = read_some(o->keys, out, size);
+  if (n < 0) o->keys = -1;
+  return n > 0 ? n : 0;
 }

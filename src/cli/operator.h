@@ -25,4 +25,8 @@ void vs_operator_close(vs_operator *operator_);
 // else "".
 vs_order vs_operator_poll(vs_operator *operator_, char *unknown);
 
+// What was typed since the last call, for keys of another meaning. 0 unless standard input is a terminal and this program is in
+// its foreground: a program in the background may not read, and a pipe may be another's.
+int vs_operator_typed(vs_operator *operator_, char *out, int size);
+
 #endif

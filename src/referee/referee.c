@@ -31,6 +31,14 @@ void vs_referee_def_lasts(vs_referee_def *def, double duration_s) {
   def->duration_s = duration_s;
 }
 
+vs_time_outs vs_time_outs_by(vs_rules rules) {
+  static const vs_time_outs by[] = {[VS_RULES_PAPER] = {0, 0},
+                                    [VS_RULES_LEAGUE] = {2, 120},
+                                    [VS_RULES_SERIE_A_2023] = {2, 180},
+                                    [VS_RULES_LARC_2026] = {2, 180}};
+  return by[rules];
+}
+
 vs_referee_def vs_referee_def_training(void) {
   vs_referee_def def = vs_referee_def_default(VS_RULES_PAPER);
   def.placement = VS_PLACEMENT_RANDOM;

@@ -32,10 +32,12 @@ struct vs_hosted {
   bool placed[VS_TEAMS];                    // a legal placement came for this restart
   bool drove[VS_TEAMS];                     // wheels were commanded while it was called
   vs_pose place[VS_TEAMS][VS_TEAM_SIZE];
+  bool asked[VS_TEAMS]; // for a time-out that has not begun
+  int time_outs[VS_TEAMS];
 };
 
 const char *vs_phase_name(vs_phase phase) {
-  static const char *const name[] = {"waiting", "called", "stopped", "play", "over"};
+  static const char *const name[] = {"waiting", "called", "stopped", "play", "time-out", "over"};
   return name[phase];
 }
 
@@ -153,6 +155,50 @@ static void call_restart(vs_hosted *m, const vs_event *event) {
   }
 }
 
+// True: one begins. The team that the call names is the one that asked.
+static bool begin_time_out(vs_hosted *m) {
+  for (int t = 0; t < VS_TEAMS; t++) {
+    if (!m->asked[t]) continue;
+    m->asked[t] = false;
+    m->time_outs[t]++;
+    enter(m, VS_PHASE_TIME_OUT, VS_FOUL_HALT, t, 0);
+    return true;
+  }
+  return false;
+}
+
+static void stop_play(vs_hosted *m, const vs_event *event) {
+  m->restart = *event;
+  if (!begin_time_out(m)) call_restart(m, event);
+}
+
+static void end_time_out(vs_hosted *m) {
+  if (!begin_time_out(m)) call_restart(m, &m->restart);
+}
+
+vs_status vs_hosted_time_out(vs_hosted *m, vs_team team, vs_error *err) {
+  const char *who = vs_team_name(team);
+  vs_time_outs by = vs_time_outs_by(m->def.referee.rules);
+  if (m->def.mode != VS_REFEREE_OWN) return vs_fail(err, VS_FAIL, "%s: a time-out is the other referee's to give", who);
+  if (m->phase == VS_PHASE_WAIT || m->phase == VS_PHASE_OVER)
+    return vs_fail(err, VS_FAIL, "%s: no time-out before or after the match", who);
+  if (m->asked[team] || (m->phase == VS_PHASE_TIME_OUT && m->call.team == (int)team))
+    return vs_fail(err, VS_FAIL, "%s has asked for a time-out already", who);
+  if (m->time_outs[team] >= by.number)
+    return vs_fail(err, VS_FAIL, "%s has had all its time-outs: %d by these rules", who, by.number);
+  m->asked[team] = true;
+  if (m->phase == VS_PHASE_CALLED || m->phase == VS_PHASE_STOPPED) begin_time_out(m);
+  return VS_OK;
+}
+
+bool vs_hosted_ready(vs_hosted *m, vs_team team) {
+  if (m->phase != VS_PHASE_TIME_OUT || m->call.team != (int)team) return false;
+  end_time_out(m);
+  return true;
+}
+
+int vs_hosted_time_outs_taken(const vs_hosted *m, vs_team team) { return m->time_outs[team]; }
+
 void vs_hosted_begin(vs_hosted *m) {
   if (m->phase != VS_PHASE_WAIT || m->def.mode != VS_REFEREE_OWN) return;
   call_restart(m, &m->referee.game.last_event);
@@ -228,8 +274,13 @@ static void referee_frame(vs_hosted *m, vs_event *event) {
     else if (event->kind == VS_EVENT_SENT_OFF)
       send_off(m);
     else if (event->kind != VS_EVENT_NONE)
-      call_restart(m, event);
+      stop_play(m, event);
     if (m->phase == VS_PHASE_PLAY || m->referee.over || m->def.pause_s > 0) return;
+  }
+  double time_out_s = vs_time_outs_by(m->def.referee.rules).length_s;
+  if (m->phase == VS_PHASE_TIME_OUT && m->phase_s + 0.5 * m->frame_s >= time_out_s) {
+    end_time_out(m);
+    if (m->def.pause_s > 0) return;
   }
   if (m->phase == VS_PHASE_CALLED && m->phase_s + 0.5 * m->frame_s >= m->def.pause_s) {
     enter(m, VS_PHASE_STOPPED, VS_FOUL_STOP, m->call.team, m->call.quadrant);

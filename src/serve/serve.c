@@ -219,6 +219,7 @@ static void listen_now(vs_serve *s) {
 static bool answered(const remote *r) { return !r->awaited || (r->got && (r->got & r->wants) == r->wants); }
 static bool began_to_answer(const remote *r) { return !r->awaited || r->got; }
 #define REST_OF_ANSWER_US 3000
+#define LOOK_UP_US        50000 // whether the program ends
 
 static void wait_until(const vs_serve *s, int64_t until_us) {
   const vs_udp *all[] = {&s->command, &s->team[0], &s->team[1], &s->placer, &s->referee_in};
@@ -256,8 +257,8 @@ static void listen_for_answers(vs_serve *s) {
       rest = true;
       until_us = now_us + REST_OF_ANSWER_US;
     }
-    if (now_us >= until_us) break;
-    wait_until(s, until_us);
+    if (now_us >= until_us || (s->def.ends && s->def.ends())) break;
+    wait_until(s, until_us < now_us + LOOK_UP_US ? until_us : now_us + LOOK_UP_US);
     listen_now(s);
   }
   for (int t = 0; t < VS_TEAMS; t++) {

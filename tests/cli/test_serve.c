@@ -45,6 +45,28 @@ static void a_full_match_conforms(void **state) {
     fail_msg("%s", json);
 }
 
+static void a_knockout_match_conforms(void **state) {
+  (void)state;
+  conforms("knockout", offset + 90, "--sync --knockout --seconds 10 --pause 0.2 --drive planar --answer 30");
+  const char *json = folder_file("knockout.json");
+  const char *end =
+      "{\"winner\": \"blue\", \"extra_time\": true, \"kicks\": [2, 2], \"kicks_scored\": [2, 0], \"lot\": false}";
+  if (!strstr(json, end) || !strstr(json, "\"complete\": true") || !strstr(json, "\"score\": [0, 0]"))
+    fail_msg("%s", json);
+}
+
+static void a_key_gives_a_team_its_time_outs(void **state) {
+  (void)state;
+  char self[4096], binary[4096], command[8448], said[4096];
+  vsss_sources(self, sizeof self);
+  vsss_binary(binary, sizeof binary);
+  snprintf(command, sizeof command, "python3 '%s/tests/serve/conformance.py' time_out %d '%s' 2>&1", self, offset + 40,
+           binary);
+  FILE *client = popen(command, "r");
+  said[fread(said, 1, sizeof said - 1, client)] = '\0';
+  if (pclose(client) != 0) fail_msg("%s", said);
+}
+
 static void free_play_conforms_in_both_dialects(void **state) {
   (void)state;
   conforms("firasim", offset + 10, "--sync --no-referee --answer 30");
@@ -141,6 +163,7 @@ static void wrong_flags_are_refused(void **state) {
   assert_refused("serve --interface hall0", 2, "'hall0'");
   assert_refused("serve --sync --realtime", 2, "exclude");
   assert_refused("serve --referee maybe", 2, "maybe");
+  assert_refused("serve --knockout --no-referee", 2, "--knockout");
   assert_refused("serve --blue nobody:", 2, "nobody:");
 }
 
@@ -148,6 +171,8 @@ int main(void) {
   offset = 100 + (int)(getpid() % 200) * 100;
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_full_match_conforms),
+      cmocka_unit_test(a_knockout_match_conforms),
+      cmocka_unit_test(a_key_gives_a_team_its_time_outs),
       cmocka_unit_test(free_play_conforms_in_both_dialects),
       cmocka_unit_test(a_second_server_is_refused_with_the_first_one_named),
       cmocka_unit_test(two_servers_run_side_by_side),

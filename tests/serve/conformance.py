@@ -1,6 +1,10 @@
-"""Checks `vsss serve` as its clients see it: conformance.py CASE PORT_OFFSET. Says what is wrong and exits with 1."""
+"""Checks `vsss serve` as its clients see it: conformance.py CASE PORT_OFFSET, or conformance.py time_out PORT_OFFSET VSSS, which
+starts the server itself, on a terminal. Says what is wrong and exits with 1."""
 import collections
 import math
+import os
+import pty
+import signal
 import sys
 
 from league_client import *
@@ -98,6 +102,106 @@ def full_match(net):
     print("conformance: %d : %d, %d calls" % (goals[0], goals[1], len(run)))
 
 
+class Calls:
+    """The referee's calls without their repeats: [call, count]."""
+
+    def __init__(self, net):
+        self.net, self.run = net, []
+
+    def hear(self):
+        """Those that are new."""
+        new = []
+        for call in self.net.calls():
+            last = self.run[-1][0] if self.run else None
+            if last and (last.foul, last.team, last.time, last.half) == (call.foul, call.team, call.time, call.half):
+                self.run[-1][1] += 1
+                continue
+            if last:
+                check("%s was sent %d times" % (NAMES[last.foul], self.run[-1][1]), self.run[-1][1] == 10)
+            self.run.append([call, 1])
+            new.append(call)
+        return new
+
+    def over(self):
+        return bool(self.run) and self.run[-1][0].foul == HALT and self.run[-1][1] == 10
+
+
+def knockout(net):
+    """Nobody scores: extra time, then the shoot-out, where blue scores and yellow stands. Blue's second goal is more than yellow
+    can still score with its third kick."""
+    calls, play, kicker, still = Calls(net), False, None, {i: (0.0, 0.0) for i in range(3)}
+    kicks = []
+    while not calls.over():
+        world = net.world()
+        check("no world for 30 s", world is not None)
+        check("goals %s: those of a shoot-out are not the match's" % (world.goals,), world.goals == (0, 0))
+        for call in calls.hear():
+            play = call.foul == GAME_ON
+            if call.foul == PENALTY:
+                kicker = call.team
+                kicks.append(call)
+        blue, yellow = dict(still), dict(still)
+        if play and calls.run[-1][0].half == 5:
+            yellow[0] = (-20.0, -20.0)  # its keeper leaves the line, backwards along the goal
+            if kicker == BLUE:
+                blue[1] = attack(world.robots[0][1], world.ball, 0.85)
+                yellow[0] = drive(world.robots[1][0], 0.69, 0.5)
+        net.send(commands(BLUE, blue))
+        net.send(commands(YELLOW, yellow))
+    halves = []
+    for call, _ in calls.run:
+        if not halves or halves[-1] != call.half:
+            halves.append(call.half)
+    check("halves %s" % halves, halves == [1, 2, 3, 4, 5])
+    kick_offs = [(c.half, c.team) for c, _ in calls.run if c.foul == KICKOFF]
+    check("kick-offs %s" % kick_offs, kick_offs == [(1, BLUE), (2, YELLOW), (3, BLUE), (4, YELLOW)])
+    check("kicks by %s" % [k.team for k in kicks], [k.team for k in kicks] == [BLUE, YELLOW, BLUE, YELLOW])
+    check("kicks in halves %s" % [k.half for k in kicks], all(k.half == 5 for k in kicks))
+    last = [c.foul for c, _ in calls.run][-4:]
+    check("it ends with %s" % [NAMES[f] for f in last], last == [PENALTY, STOP, GAME_ON, HALT])
+    print("conformance: knockout")
+
+
+def time_out(offset, vsss):
+    """A person at the server's terminal gives yellow a time-out in play and ends it, twice; a third one it has not."""
+    arguments = ["serve", "--ports", "+%d" % offset, "--sync", "--answer", "30", "--pause", "0.2", "--seconds", "60", "--drive", "planar"]
+    server, terminal = pty.fork()
+    if server == 0:
+        os.execv(vsss, [vsss] + arguments)
+    net = Network(offset)
+    calls, said, halts, worlds = Calls(net), b"", [], 0
+    try:
+        while b"had all its time-outs" not in said:
+            check("the server said %s" % said, net.world() is not None or worlds == 0)
+            worlds += 1
+            if select.select([terminal], [], [], 0)[0]:
+                said += os.read(terminal, 4096)
+            for call in calls.hear():
+                before = calls.run[-2][0] if len(calls.run) > 1 else None
+                check("%s after a time-out" % NAMES[call.foul], not (before and before.foul == HALT) or call.foul == FREE_BALL)
+                if call.foul == GAME_ON:
+                    os.write(terminal, b"y")  # nobody plays: there will be a free ball after 5 s
+                if call.foul == HALT:
+                    check("the time-out is of team %d" % call.team, call.team == YELLOW)
+                    halts.append(worlds)
+            if halts and worlds == halts[-1] + 60 and calls.run[-1][0].foul == HALT:
+                os.write(terminal, b"y")
+            for team in (BLUE, YELLOW):
+                net.send(commands(team, {i: (0.0, 0.0) for i in range(3)}))
+        check("%d time-outs" % len(halts), len(halts) == 2)
+    finally:
+        os.kill(server, signal.SIGINT)
+        while os.waitpid(server, os.WNOHANG) == (0, 0):
+            try:
+                said += os.read(terminal, 4096) if select.select([terminal], [], [], 0.05)[0] else b""
+            except OSError:  # it has closed its end
+                pass
+        os.close(terminal)
+    for text in (b"yellow asks for a time-out", b"time-out of yellow, 1 of 2: 120 s", b"time-out of yellow, 2 of 2", b"yellow is ready"):
+        check("the server said %s" % said, text in said)
+    print("conformance: time-outs")
+
+
 def settle(net, send, frames, steps):
     """Answers so many worlds with the same datagrams; returns the last world."""
     last = None
@@ -152,10 +256,15 @@ def free_play(net, radians, team_ports, hz):
 
 def main():
     case, offset = sys.argv[1], int(sys.argv[2])
+    if case == "time_out":
+        time_out(offset, sys.argv[3])
+        return
     net = Network(offset)
     net.send(commands(BLUE, {0: (0.0, 0.0)}))
     if case == "match":
         full_match(net)
+    elif case == "knockout":
+        knockout(net)
     elif case == "firasim":
         free_play(net, False, None, 60)
     elif case == "travesim":

@@ -1,5 +1,6 @@
 // Tests src/serve/hosted_match.c: the pauses of a restart, placements, replacements, commands from outside.
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "assert_near.h"
@@ -258,6 +259,99 @@ static void idle_robots_are_sent_off_until_half_time_and_play_goes_on(void **sta
   vs_hosted_free(match);
 }
 
+static int all_calls(vs_hosted *match, int n, vs_foul foul[], int team[], int most) {
+  vs_ref_command calls[64];
+  int count = 0;
+  for (int k = 0; k < n; k++) {
+    int said = frames(match, 1, calls);
+    for (int c = 0; c < said && count < most; c++, count++) foul[count] = calls[c].foul, team[count] = calls[c].team;
+  }
+  return count;
+}
+
+// A row for each set of rules: how many, how long; in between the foul is called anew, and the clock stands.
+static void a_team_has_the_time_outs_of_its_rules(void **state) {
+  (void)state;
+  const struct {
+    vs_rules rules;
+    int number;
+    double length_s;
+  } row[] = {
+      {VS_RULES_PAPER, 0, 0}, {VS_RULES_LEAGUE, 2, 120}, {VS_RULES_SERIE_A_2023, 2, 180}, {VS_RULES_LARC_2026, 2, 180}};
+  for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
+    vs_hosted_def def = {.model = model, .referee = vs_referee_def_default(row[k].rules), .pause_s = 1};
+    assert_ok(vs_robot_preset_find("firasim", &def.robot, err));
+    vs_hosted *match = NULL;
+    assert_ok(vs_hosted_new(&def, &match, err));
+    vs_hosted_begin(match);
+    frames(match, 30, NULL); // half of the pause between call and STOP
+    vs_error why = {0};
+    for (int n = 1; n <= row[k].number; n++) {
+      vs_foul foul[4];
+      int team[4];
+      assert_ok(vs_hosted_time_out(match, VS_YELLOW, err));
+      assert_int_equal(vs_hosted_phase(match), VS_PHASE_TIME_OUT);
+      assert_int_equal(vs_hosted_time_out(match, VS_YELLOW, &why), VS_FAIL); // it has one
+      assert_int_equal(all_calls(match, (int)(row[k].length_s * 60) - 1, foul, team, 4), 1);
+      assert_int_equal(foul[0], VS_FOUL_HALT);
+      assert_int_equal(team[0], VS_YELLOW);
+      assert_int_equal(vs_hosted_phase(match), VS_PHASE_TIME_OUT);
+      assert_int_equal(all_calls(match, 1, foul, team, 4), 1);
+      assert_int_equal(foul[0], VS_FOUL_KICKOFF);
+      assert_int_equal(team[0], VS_BLUE);
+      assert_int_equal(vs_hosted_phase(match), VS_PHASE_CALLED);
+      assert_int_equal(vs_hosted_time_outs_taken(match, VS_YELLOW), n);
+    }
+    assert_int_equal(vs_hosted_time_out(match, VS_YELLOW, &why), VS_FAIL);
+    char text[32];
+    snprintf(text, sizeof text, "%d by these rules", row[k].number);
+    if (!strstr(why.text, text)) fail_msg("'%s' lacks '%s'", why.text, text);
+    assert_int_equal(vs_hosted_time_outs_taken(match, VS_BLUE), 0); // the other team's are its own
+    assert_near(vs_hosted_game(match)->time_s, 0, 0);
+    vs_hosted_free(match);
+  }
+}
+
+// Asked for in play, by both: the goal comes first, then blue's, which it ends after a second, then yellow's, then the kick-off.
+static void a_time_out_waits_for_play_to_stop_and_the_team_may_end_it(void **state) {
+  (void)state;
+  vs_foul foul[8];
+  int team[8];
+  vs_error why = {0};
+  vs_hosted *match = make(VS_REFEREE_OWN, 0.5, NULL, NULL);
+  assert_int_equal(vs_hosted_time_out(match, VS_BLUE, &why), VS_FAIL); // not begun
+  vs_hosted_begin(match);
+  frames(match, 90, NULL);
+  assert_int_equal(vs_hosted_phase(match), VS_PHASE_PLAY);
+  assert_ok(vs_hosted_time_out(match, VS_YELLOW, err));
+  assert_ok(vs_hosted_time_out(match, VS_BLUE, err));
+  assert_int_equal(vs_hosted_time_out(match, VS_BLUE, &why), VS_FAIL);
+  assert_false(vs_hosted_ready(match, VS_BLUE)); // it has not begun
+  frames(match, 30, NULL);
+  assert_int_equal(vs_hosted_phase(match), VS_PHASE_PLAY);
+  // Nobody moves: by the league's rules a free ball after 5 s without motion.
+  while (vs_hosted_phase(match) == VS_PHASE_PLAY) frames(match, 1, NULL);
+  assert_int_equal(vs_hosted_phase(match), VS_PHASE_TIME_OUT);
+  double time_s = vs_hosted_game(match)->time_s;
+  assert_int_equal(vs_hosted_call(match)->team, VS_BLUE);
+  frames(match, 60, NULL);
+  assert_false(vs_hosted_ready(match, VS_YELLOW)); // blue's
+  assert_true(vs_hosted_ready(match, VS_BLUE));
+  assert_int_equal(all_calls(match, 120 * 60 - 1, foul, team, 8), 1);
+  assert_int_equal(foul[0], VS_FOUL_HALT);
+  assert_int_equal(team[0], VS_YELLOW);
+  assert_int_equal(all_calls(match, 1, foul, team, 8), 1);
+  assert_int_equal(foul[0], VS_FOUL_FREE_BALL);
+  assert_near(vs_hosted_game(match)->time_s, time_s, 0);
+  assert_int_equal(all_calls(match, 60, foul, team, 8), 2);
+  assert_int_equal(foul[0], VS_FOUL_STOP);
+  assert_int_equal(foul[1], VS_FOUL_GAME_ON);
+  vs_hosted_free(match);
+  match = make(VS_REFEREE_EXTERNAL, 0.5, NULL, NULL);
+  assert_int_equal(vs_hosted_time_out(match, VS_BLUE, &why), VS_FAIL); // not ours to give
+  vs_hosted_free(match);
+}
+
 static void the_same_commands_give_the_same_match(void **state) {
   (void)state;
   uint64_t hash[2];
@@ -283,6 +377,8 @@ int main(void) {
       cmocka_unit_test(a_goal_without_our_referee_counts_once),
       cmocka_unit_test(an_external_referee_moves_the_match),
       cmocka_unit_test(idle_robots_are_sent_off_until_half_time_and_play_goes_on),
+      cmocka_unit_test(a_team_has_the_time_outs_of_its_rules),
+      cmocka_unit_test(a_time_out_waits_for_play_to_stop_and_the_team_may_end_it),
       cmocka_unit_test(the_same_commands_give_the_same_match),
   };
   return cmocka_run_group_tests(tests, open_model, close_model);
