@@ -33,9 +33,11 @@ typedef enum vs_placement_mode { VS_PLACEMENT_PAPER, VS_PLACEMENT_RANDOM } vs_pl
 #define VS_SERIE_A_PATIENCE_S 10.0 // Serie A, LARC: stalemates, and how long a keeper may hold the ball
 // Serie A, LARC: pushing without the ball. The texts name no numbers; ours: a robot moves one of the other team that it touches
 // before it, both faster than VS_PUSH_MPS that way and farther than VS_PUSH_BALL_M from the ball, for VS_PUSH_S.
-#define VS_PUSH_MPS             0.1
-#define VS_PUSH_BALL_M          0.20
-#define VS_PUSH_S               1.0
+#define VS_PUSH_MPS    0.1
+#define VS_PUSH_BALL_M 0.20
+#define VS_PUSH_S      1.0
+// Serie A, LARC: a robot covers more than this share of the ball's diameter, as seen from above: it holds the ball.
+#define VS_HOLD_SHARE           0.30
 #define VS_LEAGUE_GOAL_KICK_X_M 0.60
 #define VS_LEAGUE_GOAL_KICK_Y_M 0.35
 
@@ -112,6 +114,11 @@ VSSS_API bool vs_referee_ok(const vs_referee *referee, const vs_referee_def *def
 VSSS_API vs_event vs_referee_step(vs_referee *referee, const vs_world *world, double dt_s);
 // Of a match that is over; -1: a draw.
 VSSS_API int vs_referee_winner(const vs_referee *referee);
+// A false start (Serie A, LARC): a robot leaves the place where it was put before GAME ON; the texts give no distance, this one is
+// ours. FOUL: one team did, event is the other's free kick. PUT_BACK: both did, or in a shoot-out: all go back to placed.
+#define VS_FALSE_START_M 0.03
+typedef enum vs_start { VS_START_PLAY, VS_START_FOUL, VS_START_PUT_BACK } vs_start;
+VSSS_API vs_start vs_referee_start(vs_referee *referee, const vs_world *placed, const vs_world *now, vs_event *event);
 // Who is off until the half ends: to be put beside the field (vs_world_beside) and left out of restarts.
 VSSS_API bool vs_referee_off(const vs_referee *referee, vs_team team, int robot);
 // ... whose wheels stand still, whatever their team commands.

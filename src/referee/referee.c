@@ -155,7 +155,7 @@ static void facts_of(const vs_world *world, double dt_s, vs_facts *f) {
   const vs_ball *ball = &world->ball;
   const double line_m = VS_FIELD_HALF_LENGTH_M + VS_BALL_RADIUS_M;
   bool over_line = fabs(ball->x_m) > line_m, in_mouth = fabs(ball->y_m) < VS_GOAL_HALF_WIDTH_M;
-  *f = (vs_facts){.dt_s = dt_s, .scorer = -1, .area = -1, .ended_play = -1, .pusher = -1};
+  *f = (vs_facts){.dt_s = dt_s, .scorer = -1, .area = -1, .ended_play = -1, .pusher = -1, .holder = -1};
   if (over_line && in_mouth) f->scorer = ball->x_m > 0 ? VS_BLUE : VS_YELLOW;
   f->ball_out = (over_line && !in_mouth) || fabs(ball->y_m) > VS_FIELD_HALF_WIDTH_M + VS_BALL_RADIUS_M;
   f->quadrant = ball->x_m >= 0 ? (ball->y_m >= 0 ? 1 : 4) : (ball->y_m >= 0 ? 2 : 3);
@@ -206,6 +206,26 @@ static void send_off(vs_referee *r, const vs_world *world, vs_event *event, doub
     event->team = (vs_team)t;
     r->game.last_event = *event;
   }
+}
+
+static bool has_left(const vs_world *placed, const vs_world *now, int team) {
+  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    const vs_pose *a = &placed->robot[team][i].pose, *b = &now->robot[team][i].pose;
+    if (vs_distance_m(a->x_m, a->y_m, b->x_m, b->y_m) > VS_FALSE_START_M) return true;
+  }
+  return false;
+}
+
+vs_start vs_referee_start(vs_referee *r, const vs_world *placed, const vs_world *now, vs_event *event) {
+  bool judged = r->def.rules == VS_RULES_SERIE_A_2023 || r->def.rules == VS_RULES_LARC_2026;
+  bool left[VS_TEAMS] = {has_left(placed, now, VS_BLUE), has_left(placed, now, VS_YELLOW)};
+  *event = (vs_event){.kind = VS_EVENT_NONE, .time_s = r->game.time_s};
+  if (!judged || !(left[VS_BLUE] || left[VS_YELLOW])) return VS_START_PLAY;
+  if (left[VS_BLUE] == left[VS_YELLOW] || r->half == VS_HALF_SHOOT_OUT) return VS_START_PUT_BACK;
+  event->kind = VS_EVENT_FREE_KICK;
+  event->team = left[VS_BLUE] ? VS_YELLOW : VS_BLUE;
+  announce(r, event, 0);
+  return VS_START_FOUL;
 }
 
 bool vs_referee_off(const vs_referee *r, vs_team team, int robot) { return r->idle.robot[team][robot].off; }

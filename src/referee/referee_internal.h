@@ -16,6 +16,7 @@ typedef struct vs_facts {
   bool near_ball[VS_TEAMS];
   // Serie A, LARC: the team that pushes without the ball (-1: none), in whose area (-1: in none) and quadrant the pushed is.
   int pusher, push_area, push_quadrant;
+  int holder;     // Serie A, LARC: the team a robot of which covers the ball; -1: none
   int ended_play; // not paper: the team whose area the ball has just left (into the goal or out of it); -1: none
 } vs_facts;
 

@@ -1,5 +1,6 @@
 // The rules of matches between real robots, 2023 (Serie A) and 2026 (LARC), as far as a world shows them: one function
-// a row. What only a person can judge (holding the ball, a false start) is left to persons.
+// a row. A false start is judged where play begins (vs_referee_start). What a world does not show is left to persons: something
+// that grips the ball without covering it, what people do by hand, damage, radio.
 #include <math.h>
 #include <stddef.h>
 
@@ -16,6 +17,15 @@ static bool touches_ball(const vs_robot *robot, const vs_ball *ball) {
   double dx = ball->x_m - robot->pose.x_m, dy = ball->y_m - robot->pose.y_m, half_m = VS_ROBOT_SIZE_M / 2;
   double ahead = fmax(fabs(c * dx + s * dy) - half_m, 0), aside = fmax(fabs(-s * dx + c * dy) - half_m, 0);
   return hypot(ahead, aside) <= VS_BALL_RADIUS_M + TOUCH_GAP_M;
+}
+
+// The share of the ball's diameter that lies under the robot's square.
+static double covered(const vs_robot *robot, const vs_ball *ball) {
+  double c = cos(robot->pose.theta_rad), s = sin(robot->pose.theta_rad);
+  double dx = ball->x_m - robot->pose.x_m, dy = ball->y_m - robot->pose.y_m, half_m = VS_ROBOT_SIZE_M / 2;
+  double ahead = fabs(c * dx + s * dy), aside = fabs(-s * dx + c * dy);
+  if (fmin(ahead, aside) > half_m || ball->z_m > VS_ROBOT_SIZE_M) return 0; // at a corner; it flies over the robot
+  return (half_m + VS_BALL_RADIUS_M - fmax(ahead, aside)) / (2 * VS_BALL_RADIUS_M);
 }
 
 static bool in_area_of(int team, const vs_robot *robot) {
@@ -89,8 +99,16 @@ static void push_clocks(vs_referee *r, const vs_world *world, vs_facts *f) {
   }
 }
 
+static int holder(const vs_world *w) {
+  for (int t = 0; t < VS_TEAMS; t++)
+    for (int i = 0; i < VS_TEAM_SIZE; i++)
+      if (covered(&w->robot[t][i], &w->ball) > VS_HOLD_SHARE) return t;
+  return -1;
+}
+
 void vs_serie_a_clocks(vs_referee *r, const vs_world *world, vs_facts *f) {
   vs_paper_clocks(r, world, f); // the stalemate outside
+  f->holder = holder(world);
   push_clocks(r, world, f);
   if (f->area != r->play_area) {
     f->ended_play = r->play_area;
@@ -149,6 +167,16 @@ static bool pushing(const vs_referee *r, const vs_facts *f, vs_event *event) {
   return call(event, VS_EVENT_FREE_KICK, pushed, 0);
 }
 
+// As pushing: by where the ball is held.
+static bool holding(const vs_referee *r, const vs_facts *f, vs_event *event) {
+  (void)r;
+  if (f->holder < 0) return false;
+  int other = vs_other_team(f->holder);
+  if (f->area == f->holder) return call(event, VS_EVENT_PENALTY, other, 0);
+  if (f->area == other) return call(event, VS_EVENT_GOAL_KICK, other, f->quadrant);
+  return call(event, VS_EVENT_FREE_KICK, other, 0);
+}
+
 static bool stalemate(const vs_referee *r, const vs_facts *f, vs_event *event) {
   return f->area < 0 && vs_reached(r->still_s, VS_SERIE_A_PATIENCE_S, f->dt_s) &&
          call(event, VS_EVENT_FREE_BALL, VS_BLUE, f->quadrant);
@@ -166,6 +194,7 @@ const vs_rule vs_serie_a_2023_rules[] = {
     {"a second defender has interfered in its area, and the ball has left it: penalty", second_defender},
     {"the ball has left the field: free ball", vs_rule_ball_out},
     {"a robot pushes another without the ball for 1 s: free kick, in its area penalty, a keeper's goal kick", pushing},
+    {"a robot covers more than 30 % of the ball: free kick, in its area penalty, in the other's goal kick", holding},
     {"the keeper has not cleared an uncontested ball for 10 s: penalty", keeper_holds},
     {"a contested ball in an area for 10 s: goal kick, after the defenders' foul penalty", contested},
     {"the ball has not moved 2 cm for 10 s elsewhere: free ball", stalemate},
@@ -179,6 +208,7 @@ const vs_rule vs_larc_2026_rules[] = {
     {"a second defender has interfered in its area, and the ball has left it: penalty", second_defender},
     {"the ball has left the field: free ball", vs_rule_ball_out},
     {"a robot pushes another without the ball for 1 s: free kick, in its area penalty, a keeper's goal kick", pushing},
+    {"a robot covers more than 30 % of the ball: free kick, in its area penalty, in the other's goal kick", holding},
     {"the keeper has not cleared an uncontested ball for 10 s: penalty", keeper_holds},
     {"a contested ball in an area for 10 s: goal kick, after the defenders' foul penalty", contested},
     {"a stalemate of 10 s again: free ball in the middle", stalemate_again},

@@ -34,6 +34,8 @@ struct vs_hosted {
   vs_pose place[VS_TEAMS][VS_TEAM_SIZE];
   bool asked[VS_TEAMS]; // for a time-out that has not begun
   int time_outs[VS_TEAMS];
+  vs_world placed_at;   // where all were put at STOP
+  bool started_falsely; // this restart came of it
 };
 
 const char *vs_phase_name(vs_phase phase) {
@@ -257,6 +259,24 @@ static void place_all(vs_hosted *m) {
     if (!overlap(&with)) placed = with;
   }
   put(m, &placed);
+  m->placed_at = m->truth;
+}
+
+// False: it was a false start, and another restart is called. One that follows at once is put right without a call: play
+// would never begin.
+static bool may_start(vs_hosted *m, vs_event *event) {
+  vs_referee judged = m->referee;
+  vs_event foul;
+  vs_start start = m->def.pause_s > 0 ? vs_referee_start(&judged, &m->placed_at, &m->truth, &foul) : VS_START_PLAY;
+  m->started_falsely = start == VS_START_FOUL && !m->started_falsely;
+  if (m->started_falsely) {
+    m->referee = judged;
+    *event = foul;
+    stop_play(m, event);
+    return false;
+  }
+  if (start != VS_START_PLAY) put(m, &m->placed_at);
+  return true;
 }
 
 static void send_off(vs_hosted *m) {
@@ -288,6 +308,7 @@ static void referee_frame(vs_hosted *m, vs_event *event) {
     if (m->def.pause_s > 0) return;
   }
   if (m->phase == VS_PHASE_STOPPED && m->phase_s + 0.5 * m->frame_s >= m->def.pause_s) {
+    if (!may_start(m, event)) return;
     enter(m, VS_PHASE_PLAY, VS_FOUL_GAME_ON, -1, 0);
     for (int t = 0; t < VS_TEAMS; t++)
       if (m->control[t]) vs_control_restart(m->control[t]);

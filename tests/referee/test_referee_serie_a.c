@@ -213,6 +213,59 @@ static void pushing_in_the_own_area_is_a_penalty(void **state) {
   }
 }
 
+// From face to centre 4 cm, the ball's diameter 4.27 cm: with the centres 5.07 cm apart a quarter of it is covered, with 4.64 cm 35 %.
+static void covering_more_than_30_percent_of_the_ball_is_holding(void **state) {
+  (void)state;
+  const struct {
+    double x_m, y_m; // of the ball
+    double apart_m;
+    vs_event_kind kind; // blue 1 holds, behind the ball
+    int quadrant;
+  } row[] = {{0.2, 0.3, 0.0507, VS_EVENT_NONE, 0},
+             {0.2, 0.3, 0.0464, VS_EVENT_FREE_KICK, 0},
+             {-0.65, 0.2, 0.0464, VS_EVENT_PENALTY, 0},
+             {0.7, 0.2, 0.0464, VS_EVENT_GOAL_KICK, 1}};
+  FOR_BOTH(rules, holder) {
+    for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
+      vs_world w = quiet_world(row[k].x_m, row[k].y_m);
+      put(&w, VS_BLUE, 1, row[k].x_m - row[k].apart_m, row[k].y_m);
+      vs_world over = w;
+      over.ball.z_m = 0.11;
+      w = turned(&w, holder);
+      over = turned(&over, holder);
+      vs_referee r = referee_of((vs_rules)rules, &w);
+      assert_int_equal(vs_referee_step(&r, &over, FRAME_S).kind, VS_EVENT_NONE); // it flies over the robot
+      vs_event event = vs_referee_step(&r, &w, FRAME_S);
+      int quadrant = row[k].quadrant && holder == VS_YELLOW ? 3 : row[k].quadrant;
+      assert_event(event, row[k].kind, row[k].kind == VS_EVENT_NONE ? VS_BLUE : other(holder), quadrant);
+    }
+  }
+}
+
+// Who has left its place by more than 3 cm before play begins: nobody, one team, both; in a shoot-out there is no free kick.
+static void a_false_start_is_the_others_free_kick(void **state) {
+  (void)state;
+  for (int rules = VS_RULES_PAPER; rules <= VS_RULES_LARC_2026; rules++)
+    for (int who = 0; who < 4; who++)
+      for (int shoot_out = 0; shoot_out < 2; shoot_out++) {
+        vs_world placed = quiet_world(0, 0), now = placed;
+        for (int t = 0; t < VS_TEAMS; t++) {
+          now.robot[t][1].pose.x_m += who & 1 << t ? 0.031 : 0.029;
+          now.robot[t][2].pose.theta_rad += 1; // turning is no leaving
+        }
+        vs_referee r = referee_of((vs_rules)rules, &placed);
+        if (shoot_out) r.half = VS_HALF_SHOOT_OUT;
+        r.free_balls = 1;
+        vs_event event;
+        vs_start start = vs_referee_start(&r, &placed, &now, &event);
+        bool judged = rules >= VS_RULES_SERIE_A_2023 && who != 0, foul = judged && who != 3 && !shoot_out;
+        assert_int_equal(start, foul ? VS_START_FOUL : judged ? VS_START_PUT_BACK : VS_START_PLAY);
+        assert_event(event, foul ? VS_EVENT_FREE_KICK : VS_EVENT_NONE, foul && who == 1 ? VS_YELLOW : VS_BLUE, 0);
+        assert_int_equal(r.game.last_event.kind, foul ? VS_EVENT_FREE_KICK : VS_EVENT_KICK_OFF);
+        assert_int_equal(r.free_balls, !foul);
+      }
+}
+
 // Blue 1 stands, the others move. Warned after 10 s, sent off after 20 by LARC's rules alone, back at half time; play and
 // its clocks go on.
 static void an_idle_robot_is_sent_off_until_half_time_in_larc_only(void **state) {
@@ -315,6 +368,8 @@ int main(void) {
       cmocka_unit_test(a_fight_for_the_ball_or_a_short_bump_is_no_pushing),
       cmocka_unit_test(a_keeper_pushed_in_its_area_is_a_goal_kick),
       cmocka_unit_test(pushing_in_the_own_area_is_a_penalty),
+      cmocka_unit_test(covering_more_than_30_percent_of_the_ball_is_holding),
+      cmocka_unit_test(a_false_start_is_the_others_free_kick),
       cmocka_unit_test(an_idle_robot_is_sent_off_until_half_time_in_larc_only),
       cmocka_unit_test(a_ball_over_the_wall_is_a_free_ball),
       cmocka_unit_test(stalemates_are_free_balls_and_in_2026_again_ones_in_the_middle),

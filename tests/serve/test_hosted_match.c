@@ -269,6 +269,42 @@ static int all_calls(vs_hosted *match, int n, vs_foul foul[], int team[], int mo
   return count;
 }
 
+// LARC's rules: blue drives between STOP and GAME ON. Yellow's free kick is called; as blue does it again, it is put back where it
+// stood and play begins. By the league's rules nothing of that.
+static void a_false_start_is_a_free_kick_and_the_next_is_put_back(void **state) {
+  (void)state;
+  for (int larc = 0; larc < 2; larc++) {
+    vs_hosted_def def = {
+        .model = model, .referee = vs_referee_def_default(larc ? VS_RULES_LARC_2026 : VS_RULES_LEAGUE), .pause_s = 1};
+    assert_ok(vs_robot_preset_find("firasim", &def.robot, err));
+    vs_hosted *match = NULL;
+    assert_ok(vs_hosted_new(&def, &match, err));
+    vs_hosted_begin(match);
+    frames(match, 60, NULL);
+    const vs_world *w = vs_hosted_world(match);
+    for (int k = 0; k < 1 + larc; k++) {
+      vs_ref_command calls[4];
+      double x_m = w->robot[VS_BLUE][2].pose.x_m;
+      assert_int_equal(vs_hosted_phase(match), VS_PHASE_STOPPED);
+      vs_hosted_command(match, VS_BLUE, 2, (vs_wheels){-20, -20});
+      frames(match, 59, NULL);
+      vs_hosted_command(match, VS_BLUE, 2, (vs_wheels){0, 0});
+      assert_true(w->robot[VS_BLUE][2].pose.x_m < x_m - 0.04);
+      assert_int_equal(frames(match, 1, calls), 1);
+      assert_int_equal(calls[0].foul, larc && k == 0 ? VS_FOUL_FREE_KICK : VS_FOUL_GAME_ON);
+      if (calls[0].foul == VS_FOUL_FREE_KICK) {
+        assert_int_equal(calls[0].team, VS_YELLOW);
+        assert_int_equal(vs_hosted_game(match)->last_event.kind, VS_EVENT_FREE_KICK);
+        frames(match, 60, NULL);
+      } else if (larc) {
+        assert_near(w->robot[VS_BLUE][2].pose.x_m, x_m, 1e-9);
+      }
+    }
+    assert_int_equal(vs_hosted_phase(match), VS_PHASE_PLAY);
+    vs_hosted_free(match);
+  }
+}
+
 // A row for each set of rules: how many, how long; in between the foul is called anew, and the clock stands.
 static void a_team_has_the_time_outs_of_its_rules(void **state) {
   (void)state;
@@ -377,6 +413,7 @@ int main(void) {
       cmocka_unit_test(a_goal_without_our_referee_counts_once),
       cmocka_unit_test(an_external_referee_moves_the_match),
       cmocka_unit_test(idle_robots_are_sent_off_until_half_time_and_play_goes_on),
+      cmocka_unit_test(a_false_start_is_a_free_kick_and_the_next_is_put_back),
       cmocka_unit_test(a_team_has_the_time_outs_of_its_rules),
       cmocka_unit_test(a_time_out_waits_for_play_to_stop_and_the_team_may_end_it),
       cmocka_unit_test(the_same_commands_give_the_same_match),
