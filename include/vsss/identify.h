@@ -1,9 +1,9 @@
 // What a robot makes of its commands: how long until one acts, how fast the wheels follow, how far. Fitted to what a camera
 // saw of it. Pure.
 //
-// Model of each wheel: speed' = (gain * command(t - delay) - speed) / time constant, the time constant one for driving
-// straight and one for turning (mass and moment of inertia load the motors differently). It holds while the motors are not
-// at their torque's limit: steps of some rad/s, as `shake:` makes them.
+// Model: each motor pulls in proportion to the gap between its wheel's speed and gain * command(t - delay), up to a limit.
+// Both pull the robot forward and, the one against the other, turn it: speed' = gap / time constant, one time constant for
+// driving straight and one for turning (mass and moment of inertia load the motors differently).
 #ifndef VSSS_IDENTIFY_H
 #define VSSS_IDENTIFY_H
 
@@ -28,9 +28,10 @@ typedef struct vs_motion_sight {
 } vs_motion_sight;
 
 typedef struct vs_identified {
-  int samples; // pairs of frames used
+  int samples; // frames used
   double delay_s, tau_straight_s, tau_turn_s, gain_left, gain_right;
-  double error_m, error_rad; // deviation of what is left, per pair of frames
+  double limit_radps;        // the gap at which a motor's torque stops growing; 0: it did not come to that
+  double error_m, error_rad; // deviation of what is left, per frame
 } vs_identified;
 
 // Both in the order of time. VS_FAIL: too little to tell from, or hardly commanded; says what to record.

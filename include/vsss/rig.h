@@ -74,7 +74,7 @@ typedef struct vs_rig_stats {
   int64_t touches;  // times an own robot came to touch the ball
   int64_t commands; // radio frames that the own robots took, all three together
   int64_t driven;   // frames in which an own robot's wheels were commanded to turn
-  double act_s;     // from a new command's bytes to the motors, in the mean; 0: there was none
+  double act_s;     // from a new command's bytes to what the robots make of it, in the mean; 0: there was none
   vs_frame_server_stats camera;
 } vs_rig_stats;
 vs_rig_stats vs_rig_get_stats(vs_rig *rig);

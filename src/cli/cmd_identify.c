@@ -41,14 +41,14 @@ static vs_status write_realism(const char *path, const robots *r, double to_byte
 }
 
 static void print_table(const robots *r) {
-  printf("%-6s %10s %14s %12s %10s %10s %8s %10s %10s\n", "robot", "delay ms", "straight ms", "turning ms", "gain left",
-         "gain right", "pairs", "left mm", "left deg");
+  printf("%-6s %10s %14s %12s %10s %10s %12s %8s %10s %10s\n", "robot", "delay ms", "straight ms", "turning ms",
+         "gain left", "gain right", "limit rad/s", "frames", "left mm", "left deg");
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     const vs_identified *k = &r->is[i];
     if (r->known[i])
-      printf("%-6d %10.1f %14.1f %12.1f %10.3f %10.3f %8d %10.2f %10.2f\n", i, 1e3 * k->delay_s,
-             1e3 * k->tau_straight_s, 1e3 * k->tau_turn_s, k->gain_left, k->gain_right, k->samples, 1e3 * k->error_m,
-             k->error_rad * 180 / M_PI);
+      printf("%-6d %10.1f %14.1f %12.1f %10.3f %10.3f %12.1f %8d %10.2f %10.2f\n", i, 1e3 * k->delay_s,
+             1e3 * k->tau_straight_s, 1e3 * k->tau_turn_s, k->gain_left, k->gain_right, k->limit_radps, k->samples,
+             1e3 * k->error_m, k->error_rad * 180 / M_PI);
   }
 }
 
@@ -59,9 +59,9 @@ static void print_json(const robots *r, double to_bytes_s) {
     const vs_identified *k = &r->is[i];
     if (!r->known[i]) continue;
     printf("%s{\"robot\": %d, \"delay_s\": %.6f, \"tau_straight_s\": %.6f, \"tau_turn_s\": %.6f, \"gain_left\": %.5f, "
-           "\"gain_right\": %.5f, \"pairs\": %d, \"error_m\": %.6f, \"error_rad\": %.6f}",
-           first ? "" : ", ", i, k->delay_s, k->tau_straight_s, k->tau_turn_s, k->gain_left, k->gain_right, k->samples,
-           k->error_m, k->error_rad);
+           "\"gain_right\": %.5f, \"limit_radps\": %.4f, \"frames\": %d, \"error_m\": %.6f, \"error_rad\": %.6f}",
+           first ? "" : ", ", i, k->delay_s, k->tau_straight_s, k->tau_turn_s, k->gain_left, k->gain_right,
+           k->limit_radps, k->samples, k->error_m, k->error_rad);
     first = false;
   }
   printf("]}\n");

@@ -50,17 +50,19 @@ const vsss_player_api vs_player_zero = {
 };
 
 // Each robot swings: forth and back, left and right, one wheel and the other, each movement and then its reverse, so that it
-// stays about where it is. Small enough for motors of any robot to follow without their limits (the simulator's leave their
-// linear range at 7.7 rad/s): what identify fits its model to.
+// stays about where it is, with a rest after each. A reversal at once would ask for twice the step: the simulator's motors
+// are at their torque's limit, and its wheels close to slipping, from 7.7 rad/s on, and identify wants to see neither.
 #define SHAKE_MIN_RADPS 3.0
 #define SHAKE_MAX_RADPS 7.0
 #define SHAKE_MIN_S     0.25
 #define SHAKE_MAX_S     0.7
+#define SHAKE_REST_S    0.25
 
+typedef enum shake_part { SHAKE_FORTH, SHAKE_REST, SHAKE_BACK, SHAKE_REST_AGAIN, SHAKE_PARTS } shake_part;
 typedef struct shake_robot {
-  double left_s, length_s; // of this movement
-  vs_wheels wheels;
-  double reversed; // it is the way back: not 0
+  double left_s, length_s; // of this part, and of its movement; length 0: not begun
+  vs_wheels wheels;        // of the movement forth
+  shake_part part;
 } shake_robot;
 typedef struct shake_state {
   vs_rng rng;
@@ -74,18 +76,16 @@ static vs_status shake_init(void *state, uint64_t seed, const char *options, vs_
 
 static void shake_next(shake_state *s, shake_robot *r) {
   static const vs_wheels way[] = {{1, 1}, {1, -1}, {1, 0}, {0, 1}};
-  if (r->reversed == 0.0 && r->length_s > 0) {
-    r->wheels = (vs_wheels){-r->wheels.left_radps, -r->wheels.right_radps};
-    r->reversed = 1;
-  } else {
+  r->part = r->length_s > 0 ? (shake_part)((r->part + 1) % SHAKE_PARTS) : SHAKE_FORTH;
+  if (r->part == SHAKE_FORTH) {
     const vs_wheels *w = &way[vs_rng_below(&s->rng, 4)];
     double speed = vs_rng_range(&s->rng, SHAKE_MIN_RADPS, SHAKE_MAX_RADPS);
     if (vs_rng_below(&s->rng, 2)) speed = -speed;
     r->wheels = (vs_wheels){speed * w->left_radps, speed * w->right_radps};
     r->length_s = vs_rng_range(&s->rng, SHAKE_MIN_S, SHAKE_MAX_S);
-    r->reversed = 0;
   }
-  r->left_s = r->length_s;
+  bool rests = r->part == SHAKE_REST || r->part == SHAKE_REST_AGAIN;
+  r->left_s = rests ? SHAKE_REST_S : r->length_s;
 }
 
 static void shake_step(void *state, const vs_world *world, const vs_game *game, double dt_s, vs_wheels *out) {
@@ -95,7 +95,8 @@ static void shake_step(void *state, const vs_world *world, const vs_game *game, 
     shake_robot *r = &s->robot[i];
     r->left_s -= dt_s;
     if (r->left_s <= 0) shake_next(s, r);
-    out[i] = r->wheels;
+    double share = r->part == SHAKE_FORTH ? 1 : r->part == SHAKE_BACK ? -1 : 0;
+    out[i] = (vs_wheels){share * r->wheels.left_radps, share * r->wheels.right_radps};
   }
 }
 

@@ -154,7 +154,9 @@ vs_status vs_rig_step(vs_rig *r, vs_rig_step_result *out, vs_error *err) {
 
 vs_rig_stats vs_rig_get_stats(vs_rig *r) {
   r->stats.commands = r->robots.taken;
-  r->stats.act_s = r->robots.acted ? 1e-6 * (double)r->robots.acted_us / (double)r->robots.acted : 0;
+  // A physics step moves by the speed at its end, so that motion runs half a step ahead of its cause.
+  double ahead_s = 0.5 * vs_model_step_s(r->def.model);
+  r->stats.act_s = r->robots.acted ? 1e-6 * (double)r->robots.acted_us / (double)r->robots.acted - ahead_s : 0;
   r->stats.camera = vs_frame_server_get_stats(r->camera);
   return r->stats;
 }

@@ -32,6 +32,7 @@ void vs_robots_close(vs_robots *r) {
 static void hear(vs_robots *r, int64_t now_us) {
   uint8_t bytes[256];
   size_t n;
+  r->heard_us = now_us;
   while ((n = vs_pty_read(r->pty, bytes, sizeof bytes)) > 0)
     for (int i = 0; i < VS_TEAM_SIZE; i++) {
       const vs_firmware before = r->firmware[i];
@@ -67,10 +68,12 @@ void vs_robots_serve(vs_robots *r, const vs_wheels measured[VS_TEAM_SIZE], int64
 }
 
 void vs_robots_wheels(vs_robots *r, int64_t now_us, vs_wheels out[VS_TEAM_SIZE]) {
+  // A picture that is drawn late is of a moment before the last bytes: the firmware's clock does not run back.
+  uint32_t clock_ms = milliseconds(now_us > r->heard_us ? now_us : r->heard_us);
   r->newest = (r->newest + 1) % VS_ROBOTS_LATE_MAX;
   int now = (r->newest + VS_ROBOTS_LATE_MAX - r->delay_frames) % VS_ROBOTS_LATE_MAX;
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
-    vs_firmware_drive drive = vs_firmware_tick(&r->firmware[i], milliseconds(now_us));
+    vs_firmware_drive drive = vs_firmware_tick(&r->firmware[i], clock_ms);
     r->late[r->newest][i] = (vs_wheels){vs_radio_radps(drive.left), vs_radio_radps(drive.right)};
     r->late_us[r->newest][i] = r->came_us[i];
     r->came_us[i] = 0;

@@ -17,6 +17,7 @@ typedef struct vs_robots {
   int64_t late_us[VS_ROBOTS_LATE_MAX][VS_TEAM_SIZE]; // when its bytes came, of commands that are new there; else 0
   int newest;                                        // row of late
   int64_t came_us[VS_TEAM_SIZE];                     // of a command that no motor was told yet; 0: none
+  int64_t heard_us;                                  // when the air was last listened to
   int64_t acted, acted_us; // commands that acted, and the sum of the time from their bytes to that
 } vs_robots;
 
@@ -26,7 +27,7 @@ void vs_robots_close(vs_robots *robots);
 
 // Hands on what comes over the air, until wake_us. measured: the wheels as they turn, for the telemetry.
 void vs_robots_serve(vs_robots *robots, const vs_wheels measured[VS_TEAM_SIZE], int64_t wake_us);
-// What the motors are told now.
+// What the motors are told at now_us, the moment of the picture; it may lie before what was served last.
 void vs_robots_wheels(vs_robots *robots, int64_t now_us, vs_wheels out[VS_TEAM_SIZE]);
 
 #endif

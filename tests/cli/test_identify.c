@@ -78,7 +78,7 @@ static void a_rig_is_measured_as_it_is(void **state) {
   print_message("delay %.1f ms, the rig's own %.1f ms; time constant %.1f ms; gain %.3f\n", 1e3 * delay_s, 1e3 * true_s,
                 1e3 * tau_s, gain);
   assert_near(delay_s, true_s, share() * true_s);
-  assert_near(tau_s, SERVO_TAU_S, 1.5 * share() * SERVO_TAU_S);
+  assert_near(tau_s, SERVO_TAU_S, share() * SERVO_TAU_S);
   assert_near(gain, 1, share());
 
   vs_realism realism;
