@@ -23,6 +23,11 @@ void vs_realtime_fine_timers(void);
 // failed with.
 int vs_realtime_plain_thread(pthread_t *out, void *(*run)(void *), void *context);
 
+// For a thread that only sleeps and computes next to nothing when it wakes: it is to go before those that compute. The lowest
+// real-time priority where this user may have one, else turns of 0.1 ms, which Linux gives to anybody since 6.12. Never fails;
+// one that runs in real time already stays as it is.
+void vs_realtime_prompt(void);
+
 #ifdef __cplusplus
 }
 #endif

@@ -74,8 +74,8 @@ void vs_serve_free(vs_serve *server); // NULL is allowed
 vs_status vs_serve_frame(vs_serve *server, vs_hosted_said *said, char *note, size_t note_size, vs_error *err);
 
 vs_hosted *vs_serve_match(vs_serve *server);
-const vs_serve_stats *vs_serve_get_stats(const vs_serve *server);
-bool vs_serve_everybody_here(const vs_serve *server); // all teams of the network were heard
+const vs_serve_stats *vs_serve_get_stats(vs_serve *server); // up to now; the server's, until the next call
+bool vs_serve_everybody_here(const vs_serve *server);       // all teams of the network were heard
 
 #ifdef __cplusplus
 }

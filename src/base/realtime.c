@@ -1,11 +1,15 @@
+#define _GNU_SOURCE
 #include "vsss/realtime.h"
 
 #include <errno.h>
 #include <sched.h>
+#include <stdint.h>
 #include <string.h>
 #include <sys/mman.h>
 #ifdef __linux__
 #include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 #endif
 
 vs_status vs_realtime_try(int priority, vs_error *err) {
@@ -43,4 +47,28 @@ int vs_realtime_plain_thread(pthread_t *out, void *(*run)(void *), void *context
   int failed = pthread_create(out, &plain, run, context);
   pthread_attr_destroy(&plain);
   return failed;
+}
+
+// As in sched_setattr(2); glibc has no wrapper before 2.41. For SCHED_OTHER runtime is the length of a turn in ns.
+static void take_short_turns(void) {
+#if defined(__linux__) && defined(SYS_sched_getattr)
+  struct {
+    uint32_t size, policy;
+    uint64_t flags;
+    int32_t nice;
+    uint32_t priority;
+    uint64_t runtime, deadline, period;
+    uint32_t least, most;
+  } now = {0};
+  if (syscall(SYS_sched_getattr, 0, &now, sizeof now, 0) != 0) return;
+  now.runtime = 100000;
+  (void)syscall(SYS_sched_setattr, 0, &now, 0);
+#endif
+}
+
+void vs_realtime_prompt(void) {
+  int policy;
+  struct sched_param now, lowest = {.sched_priority = sched_get_priority_min(SCHED_FIFO)};
+  if (pthread_getschedparam(pthread_self(), &policy, &now) != 0 || policy != SCHED_OTHER) return;
+  if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &lowest) != 0) take_short_turns();
 }

@@ -95,7 +95,7 @@ static void forfeit(const league_file *f, league_result *m, int team, const char
 }
 
 // A program that has ended, was never heard, or was silent for too long has lost.
-static bool judge(const league_file *f, league_result *m, const vs_serve *server, pid_t child[VS_TEAMS], bool waited) {
+static bool judge(const league_file *f, league_result *m, vs_serve *server, pid_t child[VS_TEAMS], bool waited) {
   for (int t = 0; t < VS_TEAMS; t++) {
     if (!*f->club[m->club[t]].command || (m->forfeits & 1 << t)) continue;
     const vs_team_traffic *traffic = &vs_serve_get_stats(server)->team[t];

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "outbox.h"
 #include "vsss/clock.h"
 #include "vsss/field.h"
 #include "vsss/realtime.h"
@@ -27,12 +28,14 @@ struct vs_serve {
   vs_udp vision, vision_claim;
   vs_udp command, team[VS_TEAMS], placer, referee_in;
   vs_udp referee_out[WAYS];
+  vs_outbox *outbox; // real time; from the first frame on
   remote remote[VS_TEAMS];
   vs_ref_command call; // being repeated
   int repeats;         // left
   bool began;          // sync: nobody is waited for at real time any more
   int64_t due_us, period_us;
   int64_t lead_us; // real time: a frame is played so much before it is due
+  int64_t unsent;  // by this thread
   vs_serve_stats stats;
   char note[200];
   uint8_t bytes[VS_LEAGUE_RECEIVE_MAX];
@@ -105,6 +108,7 @@ vs_status vs_serve_new(const vs_serve_def *def, vs_serve **out, vs_error *err) {
 
 void vs_serve_free(vs_serve *s) {
   if (!s) return;
+  vs_outbox_free(s->outbox);
   vs_udp *all[] = {&s->vision, &s->vision_claim, &s->command,        &s->team[0],       &s->team[1],
                    &s->placer, &s->referee_in,   &s->referee_out[0], &s->referee_out[1]};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) vs_udp_close(all[i]);
@@ -226,10 +230,10 @@ static void wait_until(const vs_serve *s, int64_t until_us) {
   vs_udp_wait(all, 5, until_us);
 }
 
-// A frame is played a little before it is due and sent when it is: the longest that one took of late, and half as much
-// again. Commands that come meanwhile act a frame later.
+// A frame is played a little before it is due and sent when it is: the longest that one took of late from when it should have
+// begun, and half as much again. Commands that come meanwhile act a frame later.
 static void learn_lead(vs_serve *s, int64_t took_us) {
-  int64_t wanted_us = took_us + took_us / 2, most_us = s->period_us / 2;
+  int64_t wanted_us = took_us + took_us / 2, most_us = s->period_us * 3 / 4;
   if (wanted_us > most_us) wanted_us = most_us;
   s->lead_us = wanted_us > s->lead_us ? wanted_us : s->lead_us - (s->lead_us - wanted_us) / 64;
 }
@@ -285,16 +289,28 @@ static void watch_silence(vs_serve *s) {
 // --- what goes out ----------------------------------------------------------------------------------------------------
 
 static void send_on(vs_serve *s, const vs_udp *to, size_t size) {
-  if (!vs_udp_send(to, s->bytes, size)) s->stats.unsent++;
+  if (!vs_udp_send(to, s->bytes, size)) s->unsent++;
 }
 
-static void send_world(vs_serve *s) {
+static size_t write_world(vs_serve *s) {
   const vs_game *game = vs_hosted_game(s->match);
   vs_fira_environment e = {.world = *vs_hosted_world(s->match)};
   int64_t tick_us = s->def.dialect == VS_DIALECT_TRAVESIM ? 10000 : 1000;
   e.step = (uint32_t)(e.world.time_us / tick_us);
   memcpy(e.goals, game->score, sizeof e.goals);
-  send_on(s, &s->vision, vs_fira_environment_encode(&e, s->bytes, VS_LEAGUE_DATAGRAM_MAX));
+  return vs_fira_environment_encode(&e, s->bytes, VS_LEAGUE_DATAGRAM_MAX);
+}
+
+static void send_world_now(vs_serve *s) {
+  vs_outbox_flush(s->outbox);
+  send_on(s, &s->vision, write_world(s));
+}
+
+static vs_status send_world_when_due(vs_serve *s, vs_error *err) {
+  // As late as this: with the priority that the thread has by now.
+  vs_status status = s->outbox ? VS_OK : vs_outbox_new(&s->vision, &s->outbox, err);
+  if (status == VS_OK) vs_outbox_put(s->outbox, s->bytes, write_world(s), s->due_us);
+  return status;
 }
 
 static void send_call(vs_serve *s, int times) {
@@ -328,17 +344,17 @@ vs_status vs_serve_frame(vs_serve *s, vs_hosted_said *said, char *note, size_t n
   // Open play has no beginning: it starts to hurry when its teams are here.
   if (vs_hosted_phase(s->match) != VS_PHASE_WAIT && s->def.match.mode == VS_REFEREE_OWN) s->began = true;
   watch_silence(s);
-  int64_t begun_us = vs_clock_monotonic_us();
   vs_status status = vs_hosted_frame(s->match, said, err);
   if (status != VS_OK) return status;
-  if (!at_once) {
-    learn_lead(s, vs_clock_monotonic_us() - begun_us);
-    vs_clock_sleep_until_us(s->due_us);
-  }
   // The call first: who has seen this world has then heard of it.
   if (s->def.match.mode == VS_REFEREE_OWN) send_calls(s, said);
-  send_world(s);
-  if (!s->def.sync) vs_histogram_add(&s->stats.late, vs_clock_monotonic_us() - s->due_us, s->due_us);
+  if (at_once) {
+    send_world_now(s);
+  } else {
+    learn_lead(s, vs_clock_monotonic_us() - (s->due_us - s->lead_us));
+    status = send_world_when_due(s, err);
+    if (status != VS_OK) return status;
+  }
   s->due_us += s->period_us;
   s->stats.frames++;
   if (note) snprintf(note, note_size, "%s", s->note);
@@ -346,7 +362,14 @@ vs_status vs_serve_frame(vs_serve *s, vs_hosted_said *said, char *note, size_t n
 }
 
 vs_hosted *vs_serve_match(vs_serve *s) { return s->match; }
-const vs_serve_stats *vs_serve_get_stats(const vs_serve *s) { return &s->stats; }
+const vs_serve_stats *vs_serve_get_stats(vs_serve *s) {
+  vs_histogram late = {0};
+  int64_t unsent = 0;
+  if (s->outbox) vs_outbox_told(s->outbox, &late, &unsent);
+  if (!s->def.sync) s->stats.late = late;
+  s->stats.unsent = s->unsent + unsent;
+  return &s->stats;
+}
 
 bool vs_serve_everybody_here(const vs_serve *s) {
   for (int t = 0; t < VS_TEAMS; t++)

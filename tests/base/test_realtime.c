@@ -1,6 +1,7 @@
 // src/base/realtime.c
 #include <pthread.h>
 #include <sched.h>
+#include <stdbool.h>
 #include <string.h>
 #include <sys/mman.h>
 
@@ -35,10 +36,36 @@ static void a_priority_out_of_range_is_refused(void **state) {
   assert_string_equal(err.text, "real-time priority 100: allowed are 1 to 99");
 }
 
+static void *be_prompt(void *policy) {
+  struct sched_param param;
+  vs_realtime_prompt();
+  pthread_getschedparam(pthread_self(), policy, &param);
+  assert_int_equal(param.sched_priority, *(int *)policy == SCHED_FIFO ? 1 : 0);
+  return NULL;
+}
+
+// Real time where this user may, else as before; the thread that started it stays as it was.
+static void a_prompt_thread_has_the_lowest_real_time_priority_where_allowed(void **state) {
+  (void)state;
+  pthread_t thread;
+  struct sched_param param = {.sched_priority = 1};
+  int policy = -1, own = -1;
+  assert_int_equal(pthread_create(&thread, NULL, be_prompt, &policy), 0);
+  pthread_join(thread, NULL);
+  pthread_getschedparam(pthread_self(), &own, &param);
+  assert_int_equal(own, SCHED_OTHER);
+  param.sched_priority = 1;
+  bool allowed = pthread_setschedparam(pthread_self(), SCHED_FIFO, &param) == 0;
+  param.sched_priority = 0;
+  if (allowed) assert_int_equal(pthread_setschedparam(pthread_self(), SCHED_OTHER, &param), 0);
+  assert_int_equal(policy, allowed ? SCHED_FIFO : SCHED_OTHER);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(priority_is_granted_or_the_refusal_says_how_to_allow_it),
       cmocka_unit_test(a_priority_out_of_range_is_refused),
+      cmocka_unit_test(a_prompt_thread_has_the_lowest_real_time_priority_where_allowed),
   };
   return cmocka_run_group_tests_name("base/realtime", tests, NULL, NULL);
 }

@@ -1,11 +1,12 @@
-"""Checks `vsss serve` as its clients see it: conformance.py CASE PORT_OFFSET, or conformance.py time_out PORT_OFFSET VSSS, which
-starts the server itself, on a terminal. Says what is wrong and exits with 1."""
+"""Checks `vsss serve` as its clients see it: conformance.py CASE PORT_OFFSET; conformance.py time_out PORT_OFFSET VSSS, which
+starts the server itself, on a terminal; conformance.py punctual PORT_OFFSET SECONDS, which prints how evenly worlds come. Says what is wrong and exits with 1."""
 import collections
 import math
 import os
 import pty
 import signal
 import sys
+import time
 
 from league_client import *
 
@@ -254,6 +255,29 @@ def free_play(net, radians, team_ports, hz):
     print("conformance: free play")
 
 
+def punctual(net, seconds):
+    """How evenly worlds come at real time: by the kernel's stamp of their arrival, and by when this program has them. None is
+    lost."""
+    SO_TIMESTAMPNS = 35  # Linux; Python does not name it
+    net.vision.setsockopt(socket.SOL_SOCKET, SO_TIMESTAMPNS, 1)
+    net.catch_up()
+    stamps, times, last = [], [], None
+    while not stamps or stamps[-1] - stamps[0] < seconds:
+        check("no world for 30 s", select.select([net.vision], [], [], 30)[0])
+        data, control, _, _ = net.vision.recvmsg(512, 64)
+        times.append(time.monotonic())
+        stamps += [s + 1e-9 * ns for _, kind, c in control if kind == SO_TIMESTAMPNS for s, ns in [struct.unpack("qq", c[:16])]]
+        world = World(data)
+        check_world(world, last, (16, 17))
+        last = world
+        for team in (BLUE, YELLOW):
+            net.send(commands(team, {i: (10.0, -10.0) for i in range(3)}))
+    for what, at in (("arrival", stamps), ("client", times)):
+        off = sorted(abs(b - a - 1 / 60) for a, b in zip(at, at[1:]))
+        print("jitter by %s: p50 %.3f ms, p99 %.3f ms, max %.3f ms, %d worlds, none lost" % (
+            what, *(1e3 * off[min(int(q * len(off)), len(off) - 1)] for q in (0.5, 0.99, 1)), len(at)))
+
+
 def main():
     case, offset = sys.argv[1], int(sys.argv[2])
     if case == "time_out":
@@ -263,6 +287,8 @@ def main():
     net.send(commands(BLUE, {0: (0.0, 0.0)}))
     if case == "match":
         full_match(net)
+    elif case == "punctual":
+        punctual(net, float(sys.argv[3]))
     elif case == "knockout":
         knockout(net)
     elif case == "firasim":
