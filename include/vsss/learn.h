@@ -53,8 +53,10 @@ typedef struct vs_train_def {
   // smaller than what it is the average of.
   bool export_average;
   double export_gain;
-  double action_gain;           // action = action_gain times what the policy draws from [-1, 1], clipped
-  char hidden[64];              // layer sizes, such as "256,256"
+  double
+      export_horizon_m; // of the exponentially weighted mean of the run's networks that is exported; 0: the newest one
+  double action_gain;   // action = action_gain times what the policy draws from [-1, 1], clipped
+  char hidden[64];      // layer sizes, such as "256,256"
   double initial_concentration; // alpha = beta of the untrained policy's Beta distributions; > 1
   char learner[16];             // own or torch
   // Of the products in the own learner's backward pass: fp32, bf16 (needs oneDNN and AVX512-BF16), or auto: both are

@@ -20,6 +20,7 @@ static const vs_section counters_section = {"counters", 1, 1};
 static const vs_section parameters_section = {"parameters", 1, 1};
 static const vs_section m_section = {"mean", 1, 1};
 static const vs_section v_section = {"square", 1, 1};
+static const vs_section actor_mean_section = {"actor_mean", 1, 1}; // not in a slim one, nor in those of before
 static const vs_section observation_section = {"observation", 1, 1};
 static const vs_section matches_section = {"matches", VS_VECENV_STATE, VS_VECENV_STATE};
 
@@ -69,6 +70,8 @@ static vs_status add_matches(const vs_train *train, vs_bytes *out, vs_error *err
 static vs_status save_whole(const vs_train *train, vs_bytes *out, vs_error *err) {
   save_learner(train, out);
   if (!train->started) return VS_OK;
+  if (train->actor_mean)
+    vs_archive_section(out, &actor_mean_section, train->actor_mean, train->league.size * sizeof(float));
   vs_league_save(&train->league, out);
   return add_matches(train, out, err);
 }
@@ -229,6 +232,9 @@ static vs_status load(vs_train *t, const vs_bytes *archive, const char *path, vs
   bool slim = !vs_archive_has(archive, "league", &found);
   if (s == VS_OK && !slim) s = vs_league_load(&t->league, archive, path, err);
   if (s == VS_OK && slim) vs_train_hand_over(t);
+  vs_actor_mean_restart(t);
+  if (s == VS_OK && t->actor_mean && vs_archive_has(archive, actor_mean_section.name, &found))
+    s = load_floats(archive, path, &actor_mean_section, t->actor_mean, t->league.size, err);
   // The file holds the matches of rank 0; other ranks start theirs anew, and their slots' episodes with them.
   bool matches = !slim && vs_group_rank(t->group) == 0;
   if (s == VS_OK && matches) s = load_matches(t, archive, path, err);

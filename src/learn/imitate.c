@@ -22,6 +22,7 @@ static vs_status update(vs_train *t, uint64_t seed, double *loss, vs_error *err)
 
 void vs_train_hand_over(vs_train *t) {
   vs_net_extract_actor(&t->learner.net, t->learner.parameters, &t->rollout.actor, t->actor);
+  vs_actor_mean_restart(t);
   for (int i = 0; i < t->league.selves; i++)
     if (t->league.self[i].parameters) memcpy(t->league.self[i].parameters, t->actor, t->league.size * sizeof *t->actor);
 }

@@ -108,7 +108,7 @@ static vs_status make_league_and_rollout(vs_train *t, vs_error *err) {
   s = vs_league_init(&t->league, &league, t->def.envs, actor.size, t->actor, seed, err);
   const vs_rollout_def def = {t->def.envs, t->def.steps, t->def.gamma, t->def.lambda, seed, training_io(&t->def)};
   if (s == VS_OK) s = vs_rollout_init(&t->rollout, &def, &t->learner, &t->scale, &t->league, err);
-  return s;
+  return s == VS_OK ? vs_actor_mean_open(t, err) : s;
 }
 
 vs_status vs_train_new_over(const vs_train_def *def, const vs_matches *matches, const vs_group *group, vs_train **out,
@@ -150,6 +150,7 @@ void vs_train_free(vs_train *train) {
   vs_bytes_free(&train->kept.state);
   pthread_mutex_destroy(&train->kept.lock);
   free(train->actor);
+  free(train->actor_mean);
   free(train);
 }
 
@@ -206,5 +207,6 @@ vs_status vs_train_export(const vs_train *train, const char *path, bool with_spr
   int count = OWN;
   for (; notes && notes[0] && count < MAX; notes += 2) note[count++] = (vs_onnx_note){notes[0], notes[1]};
   const vs_export_def def = {"vsss", export_io(&train->def), with_spread, note, count};
+  if (train->actor_mean) return vs_export_actor(path, &train->rollout.actor, train->actor_mean, &def, err);
   return vs_export_actor(path, &train->learner.net, train->learner.parameters, &def, err);
 }

@@ -56,6 +56,7 @@ vs_train_def vs_train_def_default(void) {
       .action_gain = 1.0,
       .export_average = true,
       .export_gain = 2.0,
+      .export_horizon_m = 5.0,
       .hidden = "256,256",
       .initial_concentration = 4.0,
       .learner = "own",
@@ -75,6 +76,7 @@ static void without_levers(vs_train_def *def) {
   def->action_gain = 1.0;
   def->export_average = false;
   def->export_gain = 0.0;
+  def->export_horizon_m = 0.0;
 }
 
 void vs_train_def_before(vs_train_def *def) {
@@ -163,6 +165,8 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       REAL(action_gain, 1, 4, "the policy's output times this, clipped, is the wheel command"),
       SWITCH(export_average, "policy files ask the network about all 24 symmetric versions and take the mean"),
       REAL(export_gain, 0, 4, "action_gain of policy files; 0: as in training"),
+      REAL(export_horizon_m, 0, 1000,
+           "policy files hold the mean of the networks of so many million transitions; 0: the last"),
       TEXT(hidden, "layer sizes of both networks"),
       REAL(initial_concentration, 1.01, 100, "alpha = beta of the untrained policy's Beta distributions"),
       TEXT(learner, "own (kernels over BLAS) or torch"),

@@ -18,6 +18,7 @@ struct vs_train {
   vs_value_scale scale;
   vs_reward_weights reward_start, reward_end;
   float *actor;                           // [rollout.actor.size]: the present actor, for the league
+  float *actor_mean;                      // [rollout.actor.size]: what is exported; NULL: the present actor is
   const vs_group *group;                  // NULL: alone
   vs_gradient_engine engine;              // gradient NULL: our kernels
   char products[128], products_times[80]; // what multiplies the matrices, and how fast it was where it was chosen
@@ -44,6 +45,10 @@ vs_status vs_train_targets(vs_train *train, vs_ppo_batch *out, vs_error *err);
 vs_status vs_train_sum_up(const vs_train *train, vs_rollout_stats *played, vs_ppo_stats *ppo, vs_error *err);
 // Every frozen self becomes the present policy.
 void vs_train_hand_over(vs_train *train);
+// The exponentially weighted mean of the actors over export_horizon_m (actor_mean.c). Restart: the present actor alone.
+vs_status vs_actor_mean_open(vs_train *train, vs_error *err);
+void vs_actor_mean_restart(vs_train *train);
+void vs_actor_mean_follow(vs_train *train, const float *actor, long long rows); // after an update of so many transitions
 // Clones who plays both sides of `matches` (taken over): the loop of imitate.c over any matches.
 vs_status vs_train_imitate_over(vs_train *train, const vs_matches *matches, int updates,
                                 bool (*progress)(void *context, double part, double loss), void *context,

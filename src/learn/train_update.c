@@ -93,6 +93,7 @@ static vs_status advance(vs_train *t, int rows, vs_error *err) {
   t->updates++;
   t->transitions += (long long)rows * vs_group_size(t->group);
   vs_net_extract_actor(&t->learner.net, t->learner.parameters, &t->rollout.actor, t->actor);
+  vs_actor_mean_follow(t, t->actor, (long long)rows * vs_group_size(t->group));
   vs_league_window results = vs_league_results(&t->league);
   vs_status s = VS_OK;
   if (t->group) s = t->group->sum_doubles(t->group->self, (double *)&results, sizeof results / sizeof(double), err);

@@ -52,6 +52,7 @@ static void assert_same(const vs_train *a, const vs_train *b) {
   assert_memory_equal(a->learner.parameters, b->learner.parameters, bytes);
   assert_memory_equal(a->learner.m, b->learner.m, bytes);
   assert_memory_equal(a->learner.v, b->learner.v, bytes);
+  assert_memory_equal(a->actor_mean, b->actor_mean, a->league.size * sizeof(float));
   assert_int_equal(a->transitions, b->transitions);
   assert_int_equal(a->league.next_id, b->league.next_id);
   assert_memory_equal(a->league.slot, b->league.slot, (size_t)a->league.slots * sizeof *a->league.slot);
