@@ -33,9 +33,10 @@ static void begin(mcap_file *f, int opcode, uint64_t size) {
 static void put_topics(mcap_file *f) {
   for (int i = 0; i < f->n_topics; i++) {
     const mcap_topic *t = &f->topic[i];
-    begin(f, SCHEMA, 2 + 4 + strlen(t->name) + 4 + strlen("jsonschema") + 4 + strlen(t->schema));
+    const char *schema_name = t->schema_name ? t->schema_name : t->name;
+    begin(f, SCHEMA, 2 + 4 + strlen(schema_name) + 4 + strlen("jsonschema") + 4 + strlen(t->schema));
     put_number(f, (uint64_t)i + 1, 2);
-    put_text(f, t->name);
+    put_text(f, schema_name);
     put_text(f, "jsonschema");
     put_text(f, t->schema);
     begin(f, CHANNEL, 2 + 2 + 4 + strlen(t->name) + 4 + strlen("json") + 4);

@@ -10,7 +10,8 @@
 #define MCAP_CHANNELS 8
 
 typedef struct mcap_topic {
-  const char *name, *schema; // schema: JSON Schema of its messages; both outlive the file
+  const char *name, *schema; // schema: JSON Schema of its messages
+  const char *schema_name;   // such as one that tools know; NULL: name. All outlive the file
 } mcap_topic;
 
 typedef struct mcap_file {

@@ -1,13 +1,17 @@
 // A log as an MCAP file for Foxglove-like tools: field, robots, ball, commands, score as JSON with schemas.
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "mcap.h"
+#include "mcap_scene.h"
 #include "replay.h"
+#include "vsss/check.h"
 #include "vsss/field.h"
 
-enum { FIELD, ROBOTS, BALL, COMMANDS, SCORE, TOPICS };
+enum { FIELD, ROBOTS, BALL, COMMANDS, SCORE, SCENE, TOPICS };
+#define SCENE_NS 33000000 // between two scenes at least: they are long
 
 #define NUMBER             "{\"type\":\"number\"}"
 #define NUMBERS            "{\"type\":\"array\",\"items\":{\"type\":\"number\"}}"
@@ -19,14 +23,22 @@ enum { FIELD, ROBOTS, BALL, COMMANDS, SCORE, TOPICS };
 
 static const mcap_topic topics[TOPICS] = {
     {"field",
-     OBJECT("\"length_m\":" NUMBER ",\"width_m\":" NUMBER ",\"goal_width_m\":" NUMBER ",\"goal_depth_m\":" NUMBER)},
-    {"robots", OBJECT("\"time_s\":" NUMBER ",\"blue\":" TEAM ",\"yellow\":" TEAM)},
-    {"ball", OBJECT("\"time_s\":" NUMBER ",\"x_m\":" NUMBER ",\"y_m\":" NUMBER ",\"z_m\":" NUMBER ",\"vx_mps\":" NUMBER
-                    ",\"vy_mps\":" NUMBER ",\"vz_mps\":" NUMBER)},
-    {"commands", OBJECT("\"team\":{\"type\":\"string\"},\"stop\":{\"type\":\"boolean\"},\"left_radps\":" NUMBERS
-                        ",\"right_radps\":" NUMBERS)},
-    {"score", OBJECT("\"time_s\":" NUMBER ",\"blue\":{\"type\":\"integer\"},\"yellow\":{\"type\":\"integer\"}"
-                     ",\"event\":{\"type\":\"string\"}")},
+     OBJECT("\"length_m\":" NUMBER ",\"width_m\":" NUMBER ",\"goal_width_m\":" NUMBER ",\"goal_depth_m\":" NUMBER),
+     NULL},
+    {"robots", OBJECT("\"time_s\":" NUMBER ",\"blue\":" TEAM ",\"yellow\":" TEAM), NULL},
+    {"ball",
+     OBJECT("\"time_s\":" NUMBER ",\"x_m\":" NUMBER ",\"y_m\":" NUMBER ",\"z_m\":" NUMBER ",\"vx_mps\":" NUMBER
+            ",\"vy_mps\":" NUMBER ",\"vz_mps\":" NUMBER),
+     NULL},
+    {"commands",
+     OBJECT("\"team\":{\"type\":\"string\"},\"stop\":{\"type\":\"boolean\"},\"left_radps\":" NUMBERS
+            ",\"right_radps\":" NUMBERS),
+     NULL},
+    {"score",
+     OBJECT("\"time_s\":" NUMBER ",\"blue\":{\"type\":\"integer\"},\"yellow\":{\"type\":\"integer\"}"
+            ",\"event\":{\"type\":\"string\"}"),
+     NULL},
+    {"scene", mcap_scene_schema, MCAP_SCENE_SCHEMA_NAME},
 };
 
 static int add_robots(char *out, size_t size, const vs_robot robot[VS_TEAM_SIZE]) {
@@ -43,8 +55,20 @@ static int add_robots(char *out, size_t size, const vs_robot robot[VS_TEAM_SIZE]
   return n + snprintf(out + n, size - (size_t)n, "]");
 }
 
-static void put_world(mcap_file *f, uint64_t ns, const vs_msg_world *m) {
+static void put_scene(mcap_file *f, uint64_t ns, const vs_world *w, uint64_t *before_ns) {
+  char json[MCAP_SCENE_JSON_MAX];
+  bool first = f->messages[SCENE] == 0;
+  if (!first && ns >= *before_ns && ns - *before_ns < SCENE_NS) return;
+  *before_ns = ns;
+  mcap_scene(w, ns, first, json);
+  mcap_message(f, SCENE, ns, json);
+}
+
+// A world with a number that is none, as in a damaged log, has no JSON.
+static void put_world(mcap_file *f, uint64_t ns, const vs_msg_world *m, uint64_t *scene_ns) {
   char json[2048];
+  if (!vs_world_ok(&m->world) || !isfinite(m->game.time_s)) return;
+  put_scene(f, ns, &m->world, scene_ns);
   const vs_ball *b = &m->world.ball;
   double time_s = m->game.time_s;
   int n = snprintf(json, sizeof json, "{\"time_s\":%.4f,\"blue\":", time_s);
@@ -62,6 +86,7 @@ static void put_world(mcap_file *f, uint64_t ns, const vs_msg_world *m) {
 
 static void put_score(mcap_file *f, uint64_t ns, double time_s, const int score[VS_TEAMS], vs_event_kind event) {
   char json[256];
+  if (!isfinite(time_s)) return;
   snprintf(json, sizeof json, "{\"time_s\":%.4f,\"blue\":%d,\"yellow\":%d,\"event\":\"%s\"}", time_s, score[VS_BLUE],
            score[VS_YELLOW], vs_event_name(event));
   mcap_message(f, SCORE, ns, json);
@@ -70,6 +95,7 @@ static void put_score(mcap_file *f, uint64_t ns, double time_s, const int score[
 static void put_command(mcap_file *f, uint64_t ns, const vs_msg_cmd *m) {
   char json[512];
   const vs_wheels *w = m->wheels;
+  if (!vs_all_finite(&w[0].left_radps, 2 * VS_TEAM_SIZE)) return;
   snprintf(json, sizeof json,
            "{\"team\":\"%s\",\"stop\":%s,\"left_radps\":[%.4f,%.4f,%.4f],\"right_radps\":[%.4f,%.4f,%.4f]}",
            vs_team_name(m->team), m->stop ? "true" : "false", w[0].left_radps, w[1].left_radps, w[2].left_radps,
@@ -84,13 +110,13 @@ static void put_field(mcap_file *f, uint64_t ns) {
   mcap_message(f, FIELD, ns, json);
 }
 
-static void put_message(mcap_file *f, uint64_t ns, const vs_message *m) {
+static void put_message(mcap_file *f, uint64_t ns, const vs_message *m, uint64_t *scene_ns) {
   switch (m->channel) {
   case VS_CH_CMD: put_command(f, ns, &m->as.cmd); return;
   case VS_CH_REFEREE:
     put_score(f, ns, m->as.referee.event.time_s, m->as.referee.score, m->as.referee.event.kind);
     return;
-  default: put_world(f, ns, &m->as.world);
+  default: put_world(f, ns, &m->as.world, scene_ns);
   }
 }
 
@@ -98,6 +124,7 @@ static vs_status convert(vs_bus_log *log, vs_channel world, mcap_file *f, vs_err
   vs_message *m = malloc(sizeof *m);
   if (!m) return vs_fail(err, VS_FAIL, "out of memory");
   vs_status s = VS_OK;
+  uint64_t scene_ns = 0;
   vs_bus_log_rewind(log);
   while (s == VS_OK && !vs_cli_interrupted()) {
     vs_log_event event;
@@ -105,11 +132,14 @@ static vs_status convert(vs_bus_log *log, vs_channel world, mcap_file *f, vs_err
     vs_channel channel;
     s = vs_bus_log_next(log, &event, &end, err);
     if (s != VS_OK || end) break;
-    uint64_t ns = event.utime_us > 0 ? 1000 * (uint64_t)event.utime_us : 0;
-    if (event.number == 0) put_field(f, ns);
     if (!vs_channel_parse(event.channel, &channel) || strcmp(vs_channel_name(channel), event.channel) != 0) continue;
     if (channel != world && channel != VS_CH_CMD && channel != VS_CH_REFEREE) continue;
-    if (vs_message_decode(channel, event.data, event.size, m, NULL, NULL) == VS_OK) put_message(f, ns, m);
+    if (vs_message_decode(channel, event.data, event.size, m, NULL, NULL) != VS_OK) continue;
+    // When it was, not when it was written: a match played faster than real time is watched at its own pace.
+    int64_t utime_us = m->utime_us > 0 ? m->utime_us : event.utime_us;
+    uint64_t ns = utime_us > 0 ? 1000 * (uint64_t)utime_us : 0;
+    if (f->messages[FIELD] == 0) put_field(f, ns);
+    put_message(f, ns, m, &scene_ns);
   }
   free(m);
   return s;
