@@ -48,7 +48,8 @@ void vs_train_hand_over(vs_train *train);
 // The exponentially weighted mean of the actors over export_horizon_m (actor_mean.c). Restart: the present actor alone.
 vs_status vs_actor_mean_open(vs_train *train, vs_error *err);
 void vs_actor_mean_restart(vs_train *train);
-void vs_actor_mean_follow(vs_train *train, const float *actor, long long rows); // after an update of so many transitions
+void vs_actor_mean_follow(vs_train *train, const float *actor,
+                          long long rows); // after an update of so many transitions
 // Clones who plays both sides of `matches` (taken over): the loop of imitate.c over any matches.
 vs_status vs_train_imitate_over(vs_train *train, const vs_matches *matches, int updates,
                                 bool (*progress)(void *context, double part, double loss), void *context,
