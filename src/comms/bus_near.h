@@ -12,8 +12,13 @@
 typedef struct vs_near {
   int fd;      // 0: not open
   int64_t far; // messages of our channels from other machines
+  uint32_t last_address; // the sender of the last message, network order; 0: none yet
+  bool last_near;        // what was found of it ...
+  int64_t last_us;       // ... and when
   uint8_t bytes[VS_NEAR_MAX];
 } vs_near;
+
+#define VS_NEAR_KNOWN_US 1000000 // for so long a sender's address stays this machine's, or another's
 
 // url: a checked udpm:// one. VS_FAIL: the group cannot be joined.
 vs_status vs_near_open(vs_near *near, const char *url, vs_error *err);

@@ -1,13 +1,12 @@
 // The calibration file: INI, made to be read and compared by people.
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "vsss/calib.h"
 #include "vsss/config.h"
+#include "vsss/file.h"
 #include "vsss/geom.h"
 
 // Rotation as a vector: axis times angle. By way of the quaternion, which is well defined at half a turn, where a
@@ -109,36 +108,25 @@ static void write_calib(FILE *f, const vs_calib *c) {
           c->worst_mm);
 }
 
-vs_status vs_calib_save(const char *path, const vs_calib *c, vs_error *err) {
-  char partial[4096];
-  if (snprintf(partial, sizeof partial, "%s.part", path) >= (int)sizeof partial)
-    return vs_fail(err, VS_FAIL, "%s: path too long", path);
-  FILE *f = fopen(partial, "w");
-  if (!f) return vs_fail(err, VS_FAIL, "%s: %s", partial, strerror(errno));
+typedef vs_status (*write_file)(const char *path, const void *data, size_t size, vs_error *err);
+
+static vs_status put(write_file write, const char *path, const vs_calib *c, vs_error *err) {
+  char text[4096];
+  FILE *f = fmemopen(text, sizeof text, "w");
+  if (!f) return vs_fail(err, VS_FAIL, "out of memory");
   write_calib(f, c);
-  int failed = ferror(f);
-  if (fclose(f) || failed || rename(partial, path)) {
-    vs_status s = vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
-    remove(partial);
-    return s;
-  }
-  return VS_OK;
+  long size = ftell(f);
+  bool whole = !ferror(f) && size > 0 && (size_t)size < sizeof text;
+  whole = !fclose(f) && whole;
+  return whole ? write(path, text, (size_t)size, err) : vs_fail(err, VS_FAIL, "%s: the calibration is too long", path);
+}
+
+vs_status vs_calib_save(const char *path, const vs_calib *c, vs_error *err) {
+  return put(vs_file_replace, path, c, err);
 }
 
 vs_status vs_calib_create(const char *path, const vs_calib *c, vs_error *err) {
-  int fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  FILE *f = fd < 0 ? NULL : fdopen(fd, "w");
-  if (!f) {
-    vs_status s = vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
-    if (fd >= 0) close(fd);
-    return s;
-  }
-  write_calib(f, c);
-  int failed = ferror(f);
-  if (!fclose(f) && !failed) return VS_OK;
-  vs_status s = vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
-  unlink(path);
-  return s;
+  return put(vs_file_create, path, c, err);
 }
 
 static vs_status parse_point(const char *path, int line, const char *text, vs_calib_point *out, vs_error *err) {
