@@ -39,8 +39,10 @@ struct vs_field {
   vs_game game;   // absolute frame
   vs_safety safety;
   int64_t start_us, last_decision_us;
-  int64_t step_us;           // moment of the world that control was stepped with last; 0: none yet
-  int64_t came_us, awake_us; // when the last frame came; when a missing one is bridged
+  int64_t step_us;              // moment of the world that control was stepped with last; 0: none yet
+  int64_t came_us, awake_us;    // when the last frame came; when a missing one is bridged
+  double loss;                  // share of the last second's frames that were lost, before the gap that is open now
+  vs_wheels kept[VS_TEAM_SIZE]; // what the robots were told last, while they ran
   uint32_t last_seq;
   vs_frame frame; // of this tick
   bool has_frame;

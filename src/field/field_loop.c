@@ -9,6 +9,12 @@
 
 #define WAIT_MS 100 // for a frame; so that a dead camera does not make us deaf to Ctrl-C
 
+// A camera that loses many of its frames all the time leaves long gaps by chance: of a half, seven in a row every 9 s. Then
+// the last command lives on for this long, where a camera that was whole until it fell silent is taken to be frozen.
+#define LOSSY          0.2
+#define LOSSY_GRACE_US 150000
+#define ABSENT_US      600000
+
 void vs_field_send(vs_field *f, const vs_wheels wheels[VS_TEAM_SIZE], bool stop, int64_t moment_us, bool now) {
   if (f->sender) vs_sender_command(f->sender, wheels, stop, moment_us, now);
 }
@@ -88,6 +94,19 @@ static void measure_latency(vs_field *f, const vs_world *world) {
   for (int i = 0; i < 2 && f->control[i]; i++) vs_control_set_latency(f->control[i], latency_s, NULL);
 }
 
+static int64_t period_us(const vs_field *f) {
+  double fps = f->eyes.info.fps;
+  return llround(1e6 / (fps >= 10.0 && fps <= 240.0 ? fps : VS_CAMERA_HZ));
+}
+
+// Before the tracker takes the frame in. A camera that was away for longer than ABSENT_US has not lost its frames.
+static void count_lost(vs_field *f, const vs_frame *frame) {
+  int64_t gap_us = frame->capture_us - f->tracker.time_us;
+  if (!f->tracker.time_us || gap_us <= 0 || gap_us > ABSENT_US) return;
+  double per_frame = (double)period_us(f) * 1e-6; // remembered for a second
+  for (int64_t i = (gap_us + period_us(f) / 2) / period_us(f); i > 0; i--) f->loss += per_frame * ((i > 1) - f->loss);
+}
+
 // Takes a frame in; false: it cannot be read, its camera was given up.
 bool vs_field_see(vs_field *f, const vs_frame *frame, vs_field_tick_result *r) {
   vs_field_count_frame(f, frame);
@@ -101,6 +120,7 @@ bool vs_field_see(vs_field *f, const vs_frame *frame, vs_field_tick_result *r) {
   }
   vs_field_mark(f, VS_STAGE_DETECT);
   vs_field_hear(f, frame->capture_us);
+  count_lost(f, frame);
   vs_track_update(&f->tracker, &f->calib, &f->seen);
   vs_track_world(&f->tracker, 0, &r->world);
   measure_latency(f, &r->world);
@@ -129,6 +149,7 @@ static void play(vs_field *f, const vs_frame *frame, vs_field_tick_result *r) {
     return;
   }
   decide(f, r);
+  memcpy(f->kept, r->wheels, sizeof f->kept);
   vs_field_mark(f, VS_STAGE_CONTROL);
   judge(f, frame->capture_us, r);
   command(f, frame->capture_us, r);
@@ -146,14 +167,15 @@ static void play(vs_field *f, const vs_frame *frame, vs_field_tick_result *r) {
   if (moved) r->said = moved;
 }
 
-static int64_t period_us(const vs_field *f) {
-  double fps = f->eyes.info.fps;
-  return llround(1e6 / (fps >= 10.0 && fps <= 240.0 ? fps : VS_CAMERA_HZ));
+// Only what runs lives on: nothing starts again without a new decision.
+static bool lives_on_blind(const vs_field *f) {
+  return f->loss > LOSSY && f->step_us && !f->dark && !f->mindless && f->safety.state == VS_SAFETY_RUNNING;
 }
 
 // No frame when one was due: the prediction stands in for it as long as the tracker holds what it saw. What is decided on
 // it ages as if it had been seen then, so that robots which nobody sees stop VS_TRACK_HOLD_US + VS_SAFETY_STALE_US after
-// the last frame at the latest; at once where the camera is known to be gone.
+// the last frame at the latest, LOSSY_GRACE_US later where frames are lost all the time; at once where the camera is known
+// to be gone.
 static void play_blind(vs_field *f, vs_field_tick_result *r) {
   int64_t next_us = f->step_us + period_us(f), now_us = vs_field_clock_us(f);
   vs_field_hear(f, now_us);
@@ -161,21 +183,31 @@ static void play_blind(vs_field *f, vs_field_tick_result *r) {
                next_us - f->tracker.time_us <= VS_TRACK_HOLD_US;
   f->awake_us = now_us + period_us(f);
   vs_track_world(&f->tracker, r->bridged ? next_us : f->step_us, &r->world);
+  int64_t moment_us = r->bridged ? next_us : f->step_us;
+  bool lives_on = !r->bridged && lives_on_blind(f);
   if (r->bridged) {
     f->stats.bridged++;
     decide(f, r);
+    memcpy(f->kept, r->wheels, sizeof f->kept);
     if (r->decided) vs_field_count_decision(f, next_us);
+  } else if (lives_on) {
+    memcpy(r->wheels, f->kept, sizeof f->kept);
+    if (moment_us + LOSSY_GRACE_US < now_us)
+      moment_us += LOSSY_GRACE_US;
+    else if (moment_us < now_us)
+      moment_us = now_us;
   }
-  judge(f, f->step_us, r);
-  if (r->bridged || r->stop) command(f, f->step_us, r);
-  if (r->bridged || r->stop) publish(f, NULL, r);
+  judge(f, moment_us, r);
+  bool tells = r->bridged || r->stop || lives_on;
+  if (tells) command(f, moment_us, r);
+  if (tells) publish(f, NULL, r);
   publish_slowly(f);
 }
 
 // Until the next frame, or until a missing one is bridged.
 static int wait_ms(const vs_field *f) {
-  if (!f->eyes.camera || !f->step_us || f->step_us + period_us(f) - f->tracker.time_us > VS_TRACK_HOLD_US)
-    return WAIT_MS;
+  bool bridges = f->eyes.camera && f->step_us && f->step_us + period_us(f) - f->tracker.time_us <= VS_TRACK_HOLD_US;
+  if (!bridges && !lives_on_blind(f)) return WAIT_MS;
   int64_t left_us = f->awake_us - vs_clock_monotonic_us();
   return left_us <= 0 ? 0 : left_us < 1000 * WAIT_MS ? (int)((left_us + 999) / 1000) : WAIT_MS;
 }

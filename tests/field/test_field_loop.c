@@ -7,6 +7,8 @@
 #include "vsss/bus.h"
 #include "vsss/clock.h"
 #include "vsss/field_loop.h"
+#include "vsss/rng.h"
+#include "vsss/tick.h"
 
 enum { W = PICTURE_W, H = PICTURE_H };
 
@@ -150,6 +152,93 @@ static void decisions_keep_the_policys_rate_and_missed_ones_are_counted(void **s
   vs_field_free(field);
 }
 
+// A run as it would be computed again from a record, so that no machine is too slow for it: turns every 33 ms, with frames that
+// show one robot and the ball, or without.
+enum { FRAME_US = 33333 };
+typedef struct run {
+  vs_field *field;
+  int64_t now_us, last_frame_us;
+  int turns, stops;
+} run;
+
+static run open_run(void) {
+  static vs_field_rerun start;
+  start = (vs_field_rerun){.width_px = W, .height_px = H, .start_us = 1000000};
+  vs_field_def def = vs_field_def_default();
+  def.camera = "fake:";
+  def.policy = "random:";
+  def.go = true;
+  def.lcm = false;
+  def.rerun = &start;
+  run r = {.now_us = start.start_us};
+  char note[400];
+  assert_ok(vs_field_new(&def, &r.field, note, sizeof note, err));
+  return r;
+}
+
+static bool turn(run *r, bool frame) {
+  r->now_us += FRAME_US;
+  vs_tick t = {.seq = r->turns,
+               .frame = frame,
+               .frame_seq = (uint32_t)r->turns,
+               .capture_us = r->now_us - 5000,
+               .fps = 30},
+          again;
+  t.camera = t.armed = true;
+  for (t.n_clock = 0; t.n_clock < VS_TICK_CLOCKS; t.n_clock++) t.clock_us[t.n_clock] = r->now_us;
+  if (frame) {
+    t.n_tags = t.n_balls = 1;
+    t.tag[0] = (vs_tick_tag){0, 0, 0, 100, {320, 240}, {{308, 252}, {332, 252}, {332, 228}, {308, 228}}};
+    t.tag[0].kind = VS_MARK_APRIL;
+    t.ball[0] = (vs_tick_blob){200, 200, 180, 1, 1, 0};
+    r->last_frame_us = t.capture_us;
+  }
+  r->turns++;
+  vs_field_again(r->field, &t, &again, NULL); // how often it looked at the clock is none of this test
+  r->stops += again.stop;
+  return again.stop;
+}
+
+// How long after the last frame's exposure the robots are stopped.
+static double frozen_ms(run *r) {
+  for (int i = 0; i < 60; i++)
+    if (turn(r, false)) return 1e-3 * (double)(r->now_us - r->last_frame_us);
+  fail_msg("frozen for 2 s, and still no stop");
+  return 0;
+}
+
+// 100 ms predicted and 150 ms more, and up to a turn.
+static void a_camera_that_was_whole_and_falls_silent_is_frozen(void **state) {
+  (void)state;
+  run r = open_run();
+  for (int i = 0; i < 60; i++) turn(&r, true);
+  assert_true(r.stops < 5); // until the first decision
+  assert_near(frozen_ms(&r), 270, 25);
+  vs_field_free(r.field);
+}
+
+// Ten minutes of half the pictures at random: gaps of ten frames are among them.
+static void a_camera_that_loses_half_of_its_pictures_stops_nobody(void **state) {
+  (void)state;
+  run r = open_run();
+  vs_rng rng = vs_rng_make(3, 0);
+  for (int i = 0; i < 90; i++) turn(&r, i < 30 || i % 2);
+  r.turns = r.stops = 0;
+  int gap = 0, longest = 0;
+  while (r.turns < 18000) {
+    bool frame = vs_rng_below(&rng, 2) != 0;
+    gap = frame ? 0 : gap + 1;
+    longest = gap > longest ? gap : longest;
+    turn(&r, frame);
+  }
+  print_message("longest gap %d frames, %d of %d turns stopped\n", longest, r.stops, r.turns);
+  assert_true(longest >= 10);
+  assert_true(r.stops < r.turns / 1000); // what is beyond 400 ms: every 2 ^ 12 frames
+  for (int i = 0; i < 30; i++) turn(&r, i % 2);
+  assert_near(frozen_ms(&r), 420, 25); // and it too is frozen in the end
+  vs_field_free(r.field);
+}
+
 static void the_end_of_a_recording_is_told(void **state) {
   (void)state;
   vs_field *field = a_field("zero:", NULL);
@@ -236,6 +325,8 @@ int main(void) {
       cmocka_unit_test(frames_that_never_came_are_counted),
       cmocka_unit_test(nothing_is_decided_on_an_old_frame),
       cmocka_unit_test(decisions_keep_the_policys_rate_and_missed_ones_are_counted),
+      cmocka_unit_test(a_camera_that_was_whole_and_falls_silent_is_frozen),
+      cmocka_unit_test(a_camera_that_loses_half_of_its_pictures_stops_nobody),
       cmocka_unit_test(the_end_of_a_recording_is_told),
       cmocka_unit_test(every_frame_is_told_and_a_referee_halts_play),
       cmocka_unit_test(what_cannot_be_opened_is_named),
