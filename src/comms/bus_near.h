@@ -10,8 +10,8 @@
 #define VS_NEAR_MAX 2048 // longer messages are none of those that move robots
 
 typedef struct vs_near {
-  int fd;      // 0: not open
-  int64_t far; // messages of our channels from other machines
+  int fd;                // 0: not open
+  int64_t far;           // messages of our channels from other machines
   uint32_t last_address; // the sender of the last message, network order; 0: none yet
   bool last_near;        // what was found of it ...
   int64_t last_us;       // ... and when
