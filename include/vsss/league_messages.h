@@ -77,7 +77,7 @@ typedef struct vs_ref_command {
   vs_foul foul;
   int team;           // vs_team; -1: nobody's
   int quadrant;       // 1 (+x +y) to 4, counter-clockwise; 0: none
-  double timestamp_s; // of the match
+  double timestamp_s; // of the match; 0 where it was no number
   int half;           // 1, 2; 3, 4: of extra time; 5: shoot-out; 0: none
 } vs_ref_command;
 size_t vs_ref_command_encode(const vs_ref_command *command, uint8_t *out, size_t out_size);

@@ -230,7 +230,9 @@ vs_status vs_ref_command_decode(const uint8_t *data, size_t size, vs_ref_command
   if (foul < 0 || foul >= VS_FOULS || team < 0 || team > 2 || quadrant < 0 || quadrant > 4 || half < 0 || half > 5)
     return vs_fail(err, VS_FAIL, "a referee's call with foul %d, colour %d, quadrant %d, half %d", foul, team, quadrant,
                    half);
-  *out = (vs_ref_command){(vs_foul)foul, team == 2 ? -1 : team, quadrant, m.timestamp, half};
+  // The call is what matters: a HALT is obeyed whatever its time says.
+  double timestamp_s = isfinite(m.timestamp) ? m.timestamp : 0;
+  *out = (vs_ref_command){(vs_foul)foul, team == 2 ? -1 : team, quadrant, timestamp_s, half};
   return VS_OK;
 }
 

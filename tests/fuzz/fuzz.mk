@@ -9,7 +9,7 @@ fuzz:
 
 $(B)/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/fuzz.h $(ARCHIVES)
 	@echo '  FUZZ  $@'
-	$(Q)$(CC) $(CFLAGS_ALL) -fsanitize=fuzzer $(LDFLAGS) -rdynamic -o $@ $< $(WHOLE) $(LDLIBS_ALL)
+	$(Q)$(CC) $(CFLAGS_ALL) -Itests -fsanitize=fuzzer $(LDFLAGS) -rdynamic -o $@ $< $(WHOLE) $(LDLIBS_ALL)
 
 fuzz-run: $(FUZZ_BIN)
 	@sh tests/fuzz/run.sh $(B) $(SECONDS)

@@ -1,4 +1,4 @@
-// Fuzzes src/league_net/messages.c: what vsss serve and field --camera firasim: hear, and vs_hosted_replace's poses. The first byte
+// Fuzzes src/league_net/messages.c: what vsss serve and field --camera firasim: hear. The first byte
 // chooses the message, the others are the datagram.
 #include <math.h>
 

@@ -134,6 +134,11 @@ static void a_call_of_the_referee_comes_back(void **state) {
   vs_error err = {0};
   assert_int_equal(vs_ref_command_decode((const uint8_t[]){0x08, 9}, 2, &back, &err), VS_FAIL);
   assert_non_null(strstr(err.text, "foul 9"));
+  // HALT at a time (4) that is no number: obeyed, at 0.
+  const uint8_t no_time[] = {0x08, 7, 0x21, 0, 0, 0, 0x40, 0xff, 0xff, 0xff, 0xff};
+  assert_ok(vs_ref_command_decode(no_time, sizeof no_time, &back, err));
+  assert_int_equal(back.foul, VS_FOUL_HALT);
+  assert_near(back.timestamp_s, 0, 0);
 }
 
 static void a_placement_comes_back_or_is_refused_with_the_robot(void **state) {
