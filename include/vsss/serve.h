@@ -5,6 +5,7 @@
 
 #include "vsss/histogram.h"
 #include "vsss/hosted_match.h"
+#include "vsss/league_log.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -39,6 +40,7 @@ typedef struct vs_serve_def {
   const char *interface; // NULL: loopback only
   bool sync;             // a frame as soon as all teams have answered the last, instead of at real time
   double answer_s;       // sync: a team that takes longer is no longer waited for until it is heard again
+  vs_league_log *log;    // what is sent to vision's and referee's groups goes there too; the caller's; NULL: none
   bool (*ends)(void);    // asked while it waits for answers: true ends the waiting; NULL: never
 } vs_serve_def;
 vs_serve_def vs_serve_def_default(void);

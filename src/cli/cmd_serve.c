@@ -11,12 +11,13 @@
 #include "message_text.h"
 #include "operator.h"
 #include "serve_record.h"
+#include "serve_replay.h"
 #include "vsss/clock.h"
 #include "vsss/serve.h"
 
 typedef struct serve_command {
   const char *uri[VS_TEAMS]; // "net" or a player's
-  const char *dialect, *rules, *referee, *ports, *interface, *robot, *drive, *record;
+  const char *dialect, *rules, *referee, *ports, *interface, *robot, *drive, *record, *league_log, *replay;
   double seconds, pause_s, wait_s, answer_s;
   int seed, rt;
   bool no_referee, knockout, sync, realtime, json;
@@ -302,6 +303,8 @@ int cmd_serve(int argc, char **argv) {
       {"rt", VS_FLAG_INT, &c.rt, "PRIO",
        "real-time priority, such as 50, and locked memory; 0: of what sends the world alone, where allowed", 0, 99},
       {"record", VS_FLAG_TEXT, &c.record, "LOG", "write a log for 'vsss replay'", 0, 0},
+      {"league-log", VS_FLAG_TEXT, &c.league_log, "FILE", "write the datagrams as VSSReferee's recorder does", 0, 0},
+      {"replay", VS_FLAG_TEXT, &c.replay, "FILE", "play no match: send such a file's datagrams again", 0, 0},
       {"json", VS_FLAG_SWITCH, &c.json, NULL, "one JSON object on standard output, nothing else", 0, 0},
       {NULL, VS_FLAG_SWITCH, NULL, NULL, NULL, 0, 0},
   };
@@ -311,7 +314,15 @@ int cmd_serve(int argc, char **argv) {
   vs_match_flags_about(about, text, sizeof text);
   vs_status s = vs_args_parse(argc, argv, "serve [flags]", text, flags, NULL, &help, &err);
   if (help) return 0;
+  if (s == VS_OK && c.replay) {
+    vs_ports ports = vs_ports_default();
+    if (c.ports) s = vs_ports_parse(c.ports, &ports, &err);
+    vs_cli_catch_interrupts();
+    if (s == VS_OK) s = serve_replay(c.replay, &ports, c.interface, &err);
+    return s == VS_OK ? 0 : vs_cli_error("serve", &err);
+  }
   if (s == VS_OK) s = prepare(&c, &err);
+  if (s == VS_OK && c.league_log) s = vs_league_log_create(c.league_log, &c.def.log, &err);
   if (s == VS_OK) s = vs_serve_new(&c.def, &c.server, &err);
   if (s == VS_OK && c.record) s = serve_record_open(c.record, c.uri, &c.log, &err);
   if (s == VS_OK) {
@@ -327,5 +338,7 @@ int cmd_serve(int argc, char **argv) {
   serve_record_close(c.log);
   vs_serve_free(c.server);
   vs_model_free(c.model);
+  vs_status logged = vs_league_log_close(c.def.log, s == VS_OK ? &err : NULL);
+  if (s == VS_OK) s = logged;
   return s == VS_OK ? 0 : vs_cli_error("serve", &err);
 }

@@ -34,8 +34,9 @@ struct vs_serve {
   int repeats;         // left
   bool began;          // sync: nobody is waited for at real time any more
   int64_t due_us, period_us;
-  int64_t lead_us; // real time: a frame is played so much before it is due
-  int64_t unsent;  // by this thread
+  int64_t lead_us;      // real time: a frame is played so much before it is due
+  int64_t unsent;       // by this thread
+  int64_t log_start_ms; // since 1970, of the first frame
   vs_serve_stats stats;
   char note[200];
   uint8_t bytes[VS_LEAGUE_RECEIVE_MAX];
@@ -292,13 +293,22 @@ static void send_on(vs_serve *s, const vs_udp *to, size_t size) {
   if (!vs_udp_send(to, s->bytes, size)) s->unsent++;
 }
 
+// Stamped by the match's clock: a match in --sync is watched at its own pace.
+static void log_sent(vs_serve *s, vs_league_kind kind, size_t size) {
+  if (!s->def.log) return;
+  if (s->log_start_ms == 0) s->log_start_ms = vs_clock_wall_us() / 1000;
+  vs_league_log_put(s->def.log, s->log_start_ms + vs_hosted_world(s->match)->time_us / 1000, kind, s->bytes, size);
+}
+
 static size_t write_world(vs_serve *s) {
   const vs_game *game = vs_hosted_game(s->match);
   vs_fira_environment e = {.world = *vs_hosted_world(s->match)};
   int64_t tick_us = s->def.dialect == VS_DIALECT_TRAVESIM ? 10000 : 1000;
   e.step = (uint32_t)(e.world.time_us / tick_us);
   memcpy(e.goals, game->score, sizeof e.goals);
-  return vs_fira_environment_encode(&e, s->bytes, VS_LEAGUE_DATAGRAM_MAX);
+  size_t size = vs_fira_environment_encode(&e, s->bytes, VS_LEAGUE_DATAGRAM_MAX);
+  log_sent(s, VS_LEAGUE_VISION, size);
+  return size;
 }
 
 static void send_world_now(vs_serve *s) {
@@ -317,6 +327,7 @@ static void send_call(vs_serve *s, int times) {
   size_t size = vs_ref_command_encode(&s->call, s->bytes, sizeof s->bytes);
   for (; times > 0; times--, s->repeats--) {
     send_on(s, &s->referee_out[TO_LOOPBACK], size);
+    log_sent(s, VS_LEAGUE_REFEREE, size);
     if (s->referee_out[TO_NETWORK].fd >= 0) send_on(s, &s->referee_out[TO_NETWORK], size);
   }
 }

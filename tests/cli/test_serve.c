@@ -155,6 +155,50 @@ static void a_record_is_replayed(void **state) {
     fail_msg("%d: %.500s%s", run.status, run.out, run.err);
 }
 
+// A second of a match with its kick-off's three calls of ten datagrams, at half time once more and at the end a HALT; sent again, the worlds
+// come in their order with what was called.
+static void a_league_log_is_sent_again(void **state) {
+  (void)state;
+  vsss_run run;
+  char text[512];
+  snprintf(text, sizeof text,
+           "serve --ports +%d --blue emc: --yellow inf: --sync --pause 0 --seconds 1 --drive planar --json "
+           "--league-log '%s/l'",
+           offset + 85, folder);
+  vsss(&run, text);
+  assert_int_equal(run.status, 0);
+  vs_udp vision, referee;
+  assert_ok(vs_udp_join("224.0.0.1", 10002 + offset + 85, NULL, &vision, err));
+  assert_ok(vs_udp_join("224.5.23.2", 10003 + offset + 85, NULL, &referee, err));
+  snprintf(text, sizeof text, "serve --ports +%d --replay '%s/l'", offset + 85, folder);
+  vsss(&run, text);
+  assert_int_equal(run.status, 0);
+  int worlds = 0, calls = 0, halts = 0;
+  size_t size;
+  uint8_t bytes[1024];
+  for (int64_t before = -1; vs_udp_receive(&vision, bytes, sizeof bytes, &size); worlds++) {
+    vs_fira_environment e;
+    assert_ok(vs_fira_environment_decode(bytes, size, &e, err));
+    assert_true((int64_t)e.step > before);
+    before = e.step;
+  }
+  for (; vs_udp_receive(&referee, bytes, sizeof bytes, &size); calls++) {
+    vs_ref_command c;
+    assert_ok(vs_ref_command_decode(bytes, size, &c, err));
+    halts += c.foul == VS_FOUL_HALT;
+  }
+  vs_udp_close(&vision);
+  vs_udp_close(&referee);
+  assert_true(worlds >= 60);
+  assert_int_equal(halts, 10);
+  assert_true(calls >= 40);
+  char said[128];
+  snprintf(said, sizeof said, "%d worlds and %d calls", worlds, calls);
+  if (!strstr(run.out, said)) fail_msg("'%s' lacks '%s'", run.out, said);
+  snprintf(text, sizeof text, "serve --ports +%d --replay '%s/log'", offset + 85, folder);
+  assert_refused(text, 1, "no entry"); // another format
+}
+
 static void wrong_flags_are_refused(void **state) {
   (void)state;
   assert_refused("serve --dialect vss", 2, "'vss'");
@@ -178,6 +222,7 @@ int main(void) {
       cmocka_unit_test(two_servers_run_side_by_side),
       cmocka_unit_test(garbage_changes_nothing),
       cmocka_unit_test(a_record_is_replayed),
+      cmocka_unit_test(a_league_log_is_sent_again),
       cmocka_unit_test(wrong_flags_are_refused),
   };
   vs_error err = {0};
