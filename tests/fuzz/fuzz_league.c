@@ -1,11 +1,12 @@
-// Fuzzes src/league_net/messages.c: what vsss serve and field --camera firasim: hear. The first byte
-// chooses the message, the others are the datagram.
+// Fuzzes src/league_net/messages.c and league_log.c: what vsss serve and field --camera firasim: hear, and the file of serve --replay.
+// The first byte chooses, the others are the datagram or the file.
 #include <math.h>
 
 #include "fuzz.h"
+#include "vsss/league_log.h"
 #include "vsss/league_messages.h"
 
-enum { PACKET_DEGREES, PACKET_RADIANS, ENVIRONMENT, CALL, PLACEMENT, MESSAGES };
+enum { PACKET_DEGREES, PACKET_RADIANS, ENVIRONMENT, CALL, PLACEMENT, MESSAGES, LOG = MESSAGES, CHOICES };
 
 int LLVMFuzzerInitialize(int *argc, char ***argv) {
   (void)argc, (void)argv;
@@ -53,14 +54,25 @@ static void check_packet(const vs_fira_packet *p) {
   if (p->places_ball && (!isfinite(p->ball.x_m) || !isfinite(p->ball.y_m) || !isfinite(p->ball.vx_mps))) abort();
 }
 
+static void read_log(const uint8_t *data, size_t size) {
+  vs_league_log *log = NULL;
+  vs_league_entry e;
+  bool end = false;
+  if (vs_league_log_open(fuzz_file(data, size), &log, NULL) != VS_OK) abort();
+  for (size_t n = 0; vs_league_log_next(log, &e, &end, NULL) == VS_OK && !end; n++)
+    if (e.size > sizeof e.data || (int)e.kind > VS_LEAGUE_VISION || n > size / 16) abort();
+  vs_league_log_close(log, NULL);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   vs_fira_packet p;
   vs_fira_environment e;
   vs_ref_command call;
   vs_ref_placement placement;
   if (size < 1) return 0;
-  int what = data[0] % MESSAGES;
+  int what = data[0] % CHOICES;
   switch (what) {
+  case LOG: read_log(data + 1, size - 1); return 0;
   case ENVIRONMENT:
     if (vs_fira_environment_decode(data + 1, size - 1, &e, NULL) == VS_OK && !vs_world_ok(&e.world)) abort();
     return 0;
