@@ -26,9 +26,10 @@ typedef struct vs_range {
 } vs_range;
 
 typedef struct vs_realism {
-  bool noise;                                      // the paper's noise at all
-  double ideal_share;                              // of the episodes have the default instead of this; 0
-  vs_range noise_scale;                            // 1
+  bool noise;              // the paper's noise at all
+  double ideal_share;      // of the episodes have the default instead of this; 0
+  double never_seen_share; // of the episodes, for each team: it never sees the ball, and so for each opponent; 0
+  vs_range noise_scale;    // 1
   vs_range position_bias_m, heading_bias_rad;      // size of a constant offset, in a random direction; 0
   vs_range position_scale;                         // 1
   vs_range latency_s, latency_jitter_s;            // capture -> wheel; changes by up to +- jitter each frame; 0
@@ -42,7 +43,7 @@ typedef struct vs_realism {
 
 VSSS_API vs_realism vs_realism_default(void); // the paper's noise only
 // INI over the default: one section per range of the struct with keys low and high; noise = true or false and
-// ideal_share = 0 to 1 at the top.
+// ideal_share, never_seen_share = 0 to 1 at the top.
 VSSS_API vs_status vs_realism_load(const char *path, vs_realism *out, vs_error *err);
 VSSS_API vs_status vs_realism_parse(const char *name_for_errors, const char *text, vs_realism *out, vs_error *err);
 // The simulator's parameters of the episode with this seed.
@@ -81,6 +82,11 @@ VSSS_API bool vs_sensors_ok(const vs_sensors *sensors);
 // Velocities are those that a Kalman filter of the measured poses estimates, as on the field; wheel speeds are not seen
 // by a camera and become 0.
 VSSS_API void vs_sensors_measure(vs_sensors *sensors, const vs_world *truth, vs_world *measured);
+// What each team's camera misses for a whole episode, of the ball and the opponents: colours that nobody taught it. The same
+// realism and seed as given to vs_sensors_reset, the same answer; it is part of no state.
+VSSS_API void vs_sensors_never(const vs_realism *realism, uint64_t seed, bool never[VS_TEAMS][VS_SENSOR_OBJECTS]);
+// What is measured as one team is told it: what it never sees as unseen.h says.
+VSSS_API void vs_sensors_hide(const bool never[VS_SENSOR_OBJECTS], vs_world *measured);
 // After a placement: what is seen next says nothing about how fast anything moved.
 VSSS_API void vs_sensors_restart(vs_sensors *sensors);
 // Commands as decided in this frame -> commands at the robots, the mean over this frame. A delay of 1.8 frames mixes

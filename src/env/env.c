@@ -32,7 +32,8 @@ struct vs_env {
   vs_env_def def;
   vs_sim *sim;
   vs_control *control[VS_TEAMS];
-  vs_control *next_control[VS_TEAMS]; // from vs_env_set_player, in force from the next reset on
+  vs_control *next_control[VS_TEAMS];      // from vs_env_set_player, in force from the next reset on
+  bool never[VS_TEAMS][VS_SENSOR_OBJECTS]; // what each team does not see in this match; follows from its seed
   match m;
 };
 
@@ -95,6 +96,17 @@ static vs_status fail_in_match(const match *m, vs_error *err) {
   return vs_fail_prefix(err, "match with seed %llu at %.2f s", (unsigned long long)m->seed, m->referee.game.time_s);
 }
 
+static void draw_never(vs_env *env) {
+  vs_sensors_never(&env->def.realism, vs_seed_mix(env->m.seed, SEED_SENSORS), env->never);
+}
+
+// What a team's camera tells it.
+static vs_world view_of(const vs_env *env, int team) {
+  vs_world view = env->m.measured;
+  vs_sensors_hide(env->never[team], &view);
+  return view;
+}
+
 static void measure(vs_env *env) {
   match *m = &env->m;
   vs_sensors_measure(&m->sensors, &m->truth, &m->measured);
@@ -104,8 +116,10 @@ static void measure(vs_env *env) {
         m->measured.robot[t][i] = (vs_robot){.pose = vs_world_parked((vs_team)t, i)};
   if (m->tick % FRAMES_PER_DECISION != 0 && !m->referee.over) return;
   for (int t = 0; t < VS_TEAMS; t++)
-    if (!vs_control_player(env->control[t]))
-      vs_control_observe(env->control[t], (vs_team)t, &m->measured, &m->referee.game);
+    if (!vs_control_player(env->control[t])) {
+      vs_world view = view_of(env, t);
+      vs_control_observe(env->control[t], (vs_team)t, &view, &m->referee.game);
+    }
 }
 
 // Puts the pieces where placed says; play goes on with a decision.
@@ -173,6 +187,7 @@ vs_status vs_env_reset(vs_env *env, uint64_t seed, vs_error *err) {
                          err);
   if (s != VS_OK) return fail_in_match(m, err);
   vs_sensors_reset(&m->sensors, &env->def.realism, vs_seed_mix(seed, SEED_SENSORS));
+  draw_never(env);
   for (int t = 0; t < VS_TEAMS && s == VS_OK; t++)
     s = vs_control_set_latency(env->control[t], predicts(env, t) ? m->sensors.latency_s : 0.0, err);
   if (s != VS_OK) return fail_in_match(m, err);
@@ -197,7 +212,8 @@ static vs_status decide(vs_env *env, vs_error *err) {
     m->commanded_frames = 0;
   }
   for (int t = 0; t < VS_TEAMS; t++) {
-    vs_status s = vs_control_step(env->control[t], (vs_team)t, &m->measured, &m->referee.game, FRAME_S, m->wheels[t],
+    vs_world view = view_of(env, t);
+    vs_status s = vs_control_step(env->control[t], (vs_team)t, &view, &m->referee.game, FRAME_S, m->wheels[t],
                                   &m->decided[t], err);
     if (s != VS_OK) {
       vs_fail_prefix(err, "%s", vs_team_name((vs_team)t));
@@ -295,7 +311,8 @@ void vs_env_observation(const vs_env *env, vs_team team, float *out) {
   }
   // A player's control observes the present frame only when it is next stepped: show what it is about to see.
   vs_observer ahead;
-  vs_control_peek(control, team, &m->measured, &m->referee.game, &ahead);
+  vs_world view = view_of(env, team);
+  vs_control_peek(control, team, &view, &m->referee.game, &ahead);
   vs_observer_write(&ahead, out);
 }
 
@@ -372,6 +389,8 @@ vs_status vs_env_restore(vs_env *env, const void *state, vs_error *err) {
     s = vs_control_restore(env->control[t], at, err);
     at += aligned(vs_control_state_size(env->control[t]));
   }
-  if (s == VS_OK) env->m = read;
-  return s;
+  if (s != VS_OK) return s;
+  env->m = read;
+  draw_never(env);
+  return VS_OK;
 }

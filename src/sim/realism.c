@@ -58,10 +58,11 @@ vs_realism vs_realism_default(void) {
 static vs_status read_ranges(const char *path, const char *text, vs_realism *out, vs_error *err) {
   vs_realism realism = vs_realism_default();
   char names[2 * ROWS][48];
-  enum { FIRST = 2 };
+  enum { FIRST = 3 };
   vs_config_key schema[2 * ROWS + FIRST + 1] = {
       {.name = "noise", .type = VS_CONFIG_BOOL, .target = &realism.noise},
-      {.name = "ideal_share", .type = VS_CONFIG_REAL, .target = &realism.ideal_share, .min = 0, .max = 1}};
+      {.name = "ideal_share", .type = VS_CONFIG_REAL, .target = &realism.ideal_share, .min = 0, .max = 1},
+      {.name = "never_seen_share", .type = VS_CONFIG_REAL, .target = &realism.never_seen_share, .min = 0, .max = 1}};
   for (size_t i = 0; i < 2 * ROWS; i++) {
     const row *from = &rows[i / 2];
     vs_range *range = range_of(&realism, i / 2);

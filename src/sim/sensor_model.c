@@ -14,12 +14,34 @@
 
 static double draw(vs_rng *rng, vs_range range) { return vs_rng_range(rng, range.low, range.high); }
 
+static bool is_ideal(const vs_realism *realism, uint64_t seed) {
+  vs_rng rng = vs_rng_make(seed, 3);
+  return realism->ideal_share > 0 && vs_rng_uniform(&rng) < realism->ideal_share;
+}
+
+void vs_sensors_never(const vs_realism *realism, uint64_t seed, bool never[VS_TEAMS][VS_SENSOR_OBJECTS]) {
+  memset(never, 0, VS_TEAMS * sizeof never[0]);
+  if (realism->never_seen_share <= 0 || is_ideal(realism, seed)) return;
+  vs_rng rng = vs_rng_make(seed, 4);
+  for (int team = 0; team < VS_TEAMS; team++)
+    for (int object = 0; object < VS_SENSOR_OBJECTS; object++) {
+      bool own = object < VS_TEAMS * VS_TEAM_SIZE && object / VS_TEAM_SIZE == team;
+      bool is_never = vs_rng_uniform(&rng) < realism->never_seen_share;
+      never[team][object] = is_never && !own;
+    }
+}
+
+void vs_sensors_hide(const bool never[VS_SENSOR_OBJECTS], vs_world *measured) {
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
+    int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE;
+    if (never[i]) measured->robot[team][index] = (vs_robot){.pose = vs_world_parked((vs_team)team, index)};
+  }
+  if (never[VS_SENSOR_OBJECTS - 1]) measured->ball = (vs_ball){.z_m = VS_BALL_RADIUS_M};
+}
+
 void vs_sensors_reset(vs_sensors *sensors, const vs_realism *realism, uint64_t seed) {
   const vs_realism ideal = vs_realism_default();
-  if (realism->ideal_share > 0) {
-    vs_rng rng = vs_rng_make(seed, 3);
-    if (vs_rng_uniform(&rng) < realism->ideal_share) realism = &ideal;
-  }
+  if (is_ideal(realism, seed)) realism = &ideal;
   memset(sensors, 0, sizeof *sensors);
   sensors->rng = vs_rng_make(seed, 0);
   sensors->params = vs_realism_draw(realism, seed);

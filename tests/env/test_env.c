@@ -344,6 +344,40 @@ static void a_team_with_a_radio_of_its_own_acts_at_once(void **state) {
   vs_env_free(env);
 }
 
+// Blue never sees ball and opponents: what it observes is their places of unseen.h. What is measured, and the match, go on.
+static void what_a_team_never_sees_is_told_as_never_seen_through_snapshots_too(void **state) {
+  (void)state;
+  vs_env_def def = vs_env_def_default(model);
+  def.player[VS_YELLOW] = "random:";
+  def.realism.never_seen_share = 1;
+  vs_env *env, *other;
+  assert_ok(vs_env_new(&def, &env, err));
+  assert_ok(vs_env_new(&def, &other, err));
+  assert_ok(vs_env_reset(env, 11, err));
+  play_frames(env, 60);
+  void *snapshot = aligned_alloc(64, vs_env_state_size(env));
+  vs_env_save(env, snapshot);
+  assert_ok(vs_env_restore(other, snapshot, err)); // which was never reset
+  play_frames(env, 60);
+  play_frames(other, 60);
+  assert_int_equal(vs_env_hash(env), vs_env_hash(other));
+  for (int k = 0; k < 2; k++) {
+    static float observation[VS_TEAM_SIZE * VS_OBS_SIZE];
+    vs_world measured;
+    vs_env_measured(k ? other : env, &measured);
+    assert_true(measured.ball.valid);
+    vs_env_observation(k ? other : env, VS_BLUE, observation);
+    const float *newest = observation + (VS_OBS_STACK - 1) * VS_OBS_FRAME;
+    vs_pose own = measured.robot[VS_BLUE][0].pose;
+    assert_near(newest[VS_OBS_OWN_XY], own.x_m / VS_OBS_SCALE_X_M, 1e-6); // own robots are seen
+    assert_near(newest[VS_OBS_BALL_XY], 0, 0);
+    assert_near(newest[VS_OBS_BALL_XY + 1], 0, 0);
+  }
+  free(snapshot);
+  vs_env_free(env);
+  vs_env_free(other);
+}
+
 static void a_snapshot_continues_bit_identically_here_and_elsewhere(void **state) {
   (void)state;
   vs_env_def def = vs_env_def_default(model);
@@ -484,6 +518,7 @@ int main(void) {
       cmocka_unit_test(two_defenders_and_the_ball_in_their_area_are_a_foul_of_theirs),
       cmocka_unit_test(the_clock_and_the_first_goal_end_an_episode_differently),
       cmocka_unit_test(a_team_with_a_radio_of_its_own_acts_at_once),
+      cmocka_unit_test(what_a_team_never_sees_is_told_as_never_seen_through_snapshots_too),
       cmocka_unit_test(a_snapshot_continues_bit_identically_here_and_elsewhere),
       cmocka_unit_test(a_player_is_exchanged_at_the_next_reset),
       cmocka_unit_test(failures_name_seed_time_and_team),

@@ -241,7 +241,7 @@ def realism_text(value: Any) -> Optional[str]:
         raise UsageError(f"realism: a path or a dict of ranges, not {type(value).__name__}")
     top, sections = [], []
     for key, given in value.items():
-        if key == "noise" or key == "ideal_share":
+        if key in ("noise", "ideal_share", "never_seen_share"):
             top.append(f"{key} = {str(given).lower()}\n")
             continue
         try:
