@@ -38,17 +38,18 @@ bool vs_channel_parse(const char *name, vs_channel *out); // with or without "VS
 #define VS_BUS_TEXT 128 // longer texts are cut
 
 typedef struct vs_msg_world {
-  vs_world world;
+  vs_world world; // of either division: world_t or world_5v5_t on the wire
   vs_game game;
   int asks_team; // VS_CH_STATE: the team whose command is awaited (players in another process); -1: nobody's
 } vs_msg_world;
 
 typedef struct vs_msg_cmd {
   vs_team team;
-  vs_wheels wheels[VS_TEAM_SIZE];
+  vs_wheels wheels[VS_TEAM_MOST];
   bool stop;                // brake and hold until a command without it
   int64_t state_seq;        // world.seq this answers; -1: none
   char source[VS_BUS_TEXT]; // player URI, or who else commands
+  vs_division division;     // how many wheels count, and the type on the wire: cmd_t or cmd_5v5_t
 } vs_msg_cmd;
 
 typedef struct vs_msg_referee {

@@ -30,6 +30,9 @@ VSSS_API vs_status vs_control_reset(vs_control *control, uint64_t seed, bool shu
 // After the referee placed the robots: history and last action start anew, the next call decides, the player goes on.
 VSSS_API void vs_control_restart(vs_control *control);
 
+// VS_USAGE with the reason where it cannot play a division: learned policies and external teams play 3 against 3 alone.
+VSSS_API vs_status vs_control_plays(const vs_control *control, vs_division division, vs_error *err);
+
 // How long after the moment that a world shows a command given on it reaches the wheels (camera, decision and radio
 // together; measure it). Before anything is shown to the player, the world is moved on by so much: own robots by the
 // commands that are on their way, the other objects as they go. So a player that knows no delay plays as if there were
@@ -41,9 +44,10 @@ VSSS_API vs_status vs_control_set_latency(vs_control *control, double latency_s,
 // Called for every camera frame with the measured absolute world and game, dt_s since the last call. Lets the player
 // decide when its rate says so (the first call decides, lost frames are skipped, never made up for) and writes the
 // wheels to apply until the next call; where it fails, zeros. decided (may be NULL) tells whether this frame was a
-// decision. A scripted team is observed at VS_DECISION_HZ all the same, so that it can be recorded and imitated.
+// decision. In 3 against 3 a scripted team is observed at VS_DECISION_HZ all the same, so that it can be recorded and
+// imitated. out: [the world's team_size].
 VSSS_API vs_status vs_control_step(vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game,
-                                   double dt_s, vs_wheels out[VS_TEAM_SIZE], bool *decided, vs_error *err);
+                                   double dt_s, vs_wheels *out, bool *decided, vs_error *err);
 
 // External teams: observe (push a frame at a decision time), read, act. The action is held until the next; one that is
 // not finite is VS_FAIL and changes nothing.

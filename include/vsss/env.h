@@ -52,7 +52,9 @@ VSSS_API void vs_env_free(vs_env *env);
 VSSS_API vs_status vs_env_reset(vs_env *env, uint64_t seed, vs_error *err);
 
 // One camera frame. event (may be NULL): what the referee said after it; the pieces have already been placed anew.
-// VS_USAGE once the match is over. A failure names the match's seed and time.
+// VS_USAGE once the match is over. A failure names the match's seed and time. The model says the division: in others than
+// 3 against 3 learned policies and external teams are refused (VS_USAGE), and so are decisions with their rewards
+// (vs_env_step) - matches go frame by frame.
 VSSS_API vs_status vs_env_frame(vs_env *env, vs_event *event, vs_error *err);
 
 // One decision: frames until the next decision tick, at most three. A placement ends it early: the frame count starts
@@ -68,7 +70,7 @@ VSSS_API vs_status vs_env_step(vs_env *env, vs_env_result *result, vs_error *err
 
 // External teams: float[3][2] action, held until replaced. Any team: float[3][464] observation of the present decision
 // tick, and float[3][2] what it commanded in the last decision, the mean over its frames (a 30 Hz player changes its
-// mind within one).
+// mind within one). Zeros in other divisions.
 VSSS_API vs_status vs_env_set_action(vs_env *env, vs_team team, const float *action, vs_error *err);
 VSSS_API void vs_env_observation(const vs_env *env, vs_team team, float *out);
 VSSS_API void vs_env_mean_action(const vs_env *env, vs_team team, float *out);
@@ -80,7 +82,7 @@ VSSS_API void vs_env_truth(const vs_env *env, vs_world *out);
 VSSS_API void vs_env_judged(const vs_env *env,
                             vs_world *out); // the truth at the end of the last frame, before a placement
 VSSS_API void vs_env_measured(const vs_env *env, vs_world *out); // what both teams saw last
-VSSS_API void vs_env_wheels(const vs_env *env, vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]);
+VSSS_API void vs_env_wheels(const vs_env *env, vs_wheels out[VS_TEAMS][VS_TEAM_MOST]);
 VSSS_API bool vs_env_decided(const vs_env *env, vs_team team); // the last frame was a decision of this team's player
 VSSS_API const vs_referee *vs_env_referee(const vs_env *env);
 VSSS_API const vs_game *vs_env_game(const vs_env *env);

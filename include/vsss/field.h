@@ -1,6 +1,6 @@
 // Stable: part of libvsss (deploy/docs/library.md).
 //
-// Sizes of the 3 against 3 field, ball and robot (paper, Table 1 and section VI; IEEE VSSS rules 2008).
+// Sizes of the 3 against 3 field (others: division.h), ball and robot (paper, Table 1 and section VI; IEEE VSSS rules 2008).
 // The nominal robot's servo and the ball's rolling are the simulator's (src/sim/drive.h says whence).
 // Origin in the field's centre, x towards the goal that blue attacks, y to blue's left, z up. Metres, kilograms.
 #ifndef VSSS_FIELD_H
@@ -19,6 +19,8 @@
 #define VS_FREE_BALL_MARK_Y_M  0.40
 #define VS_FREE_BALL_ROBOT_M   0.20 // robot to mark, along x
 #define VS_CIRCLE_RADIUS_M     0.20
+#define VS_GOAL_KICK_X_M       0.60
+#define VS_GOAL_KICK_Y_M       0.35
 
 #define VS_BALL_RADIUS_M 0.02135
 #define VS_BALL_MASS_KG  0.046

@@ -34,7 +34,7 @@ const char *vs_phase_name(vs_phase phase); // "waiting", "called", ...
 typedef enum vs_referee_mode { VS_REFEREE_OWN, VS_REFEREE_NONE, VS_REFEREE_EXTERNAL } vs_referee_mode;
 
 typedef struct vs_hosted_def {
-  const vs_model *model;        // its frame_hz is the vision's; shared, outlives the match
+  const vs_model *model;        // its frame_hz is the vision's, its division the match's; shared, outlives the match
   const char *player[VS_TEAMS]; // URI, or NULL: from outside
   const vs_robot_preset *robot;
   vs_referee_def referee;
@@ -56,7 +56,7 @@ vs_status vs_hosted_new(const vs_hosted_def *def, vs_hosted **out, vs_error *err
 void vs_hosted_free(vs_hosted *match);                                             // NULL is allowed
 
 // From outside, at any time. Commands are rad/s of the preset's wheel, held until the next; those of a local team's
-// robots are ignored (false). Replacements are obeyed but while our own referee is in charge (false). A placement that
+// robots, and of robots that the division has not, are ignored (false). Replacements are obeyed but while our own referee is in charge (false). A placement that
 // is not legal at the present restart is VS_FAIL with the reason; outside VS_PHASE_CALLED it is ignored.
 bool vs_hosted_command(vs_hosted *match, vs_team team, int robot, vs_wheels wheels);
 bool vs_hosted_replace(vs_hosted *match, const vs_fira_packet *packet);
@@ -79,7 +79,7 @@ const vs_referee *vs_hosted_referee(const vs_hosted *match);
 const vs_game *vs_hosted_game(const vs_hosted *match);
 vs_phase vs_hosted_phase(const vs_hosted *match);
 const vs_ref_command *vs_hosted_call(const vs_hosted *match);                         // the referee's present word
-void vs_hosted_wheels(const vs_hosted *match, vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]); // rad/s of our wheels
+void vs_hosted_wheels(const vs_hosted *match, vs_wheels out[VS_TEAMS][VS_TEAM_MOST]); // rad/s of our wheels
 uint64_t vs_hosted_hash(const vs_hosted *match);
 // Simulated time since a team from outside last sent a command; 0 for a local one.
 double vs_hosted_silence_s(const vs_hosted *match, vs_team team);

@@ -22,7 +22,7 @@ typedef struct vs_idle {
     double x_m, y_m; // it has stayed within the radius of this point
     double stayed_s;
     bool warned, off;
-  } robot[VS_TEAMS][VS_TEAM_SIZE];
+  } robot[VS_TEAMS][VS_TEAM_MOST];
   int warnings[VS_TEAMS], sent_off[VS_TEAMS]; // so far
 } vs_idle;
 

@@ -18,7 +18,8 @@ extern "C" {
 #endif
 
 // Clients read no more: FIRASim's of 3 against 3 have buffers of 512 bytes, of 5 against 5 of 1024.
-#define VS_LEAGUE_DATAGRAM_MAX 512
+#define VS_LEAGUE_DATAGRAM_MAX     512
+#define VS_LEAGUE_DATAGRAM_5V5_MAX 1024
 // Nothing in the league is longer; a longer datagram is garbage.
 #define VS_LEAGUE_RECEIVE_MAX 4096
 
@@ -31,12 +32,13 @@ typedef struct vs_fira_environment {
   vs_world world; // a robot that is not valid is left out
   int goals[VS_TEAMS];
 } vs_fira_environment;
-// Size written; 0: does not fit. decode: robots that are not in it are not valid; time_us and seq are left at 0.
+// Size written; 0: does not fit. decode: robots that are not in it are not valid; time_us and seq are left at 0; the
+// division is the one whose field is as long as it says (3 against 3 where it says none).
 size_t vs_fira_environment_encode(const vs_fira_environment *environment, uint8_t *out, size_t out_size);
 vs_status vs_fira_environment_decode(const uint8_t *data, size_t size, vs_fira_environment *out, vs_error *err);
 
-// What a simulator is told. Rows with a number that is not finite, a robot that does not exist or a place outside the
-// field are left out and counted in dropped.
+// What a simulator is told. Rows with a number that is not finite, a robot that no division has (the match knows which it
+// has) or a place outside the largest field are left out and counted in dropped.
 #define VS_FIRA_ROWS 16
 typedef struct vs_fira_packet {
   int commands;
@@ -58,6 +60,8 @@ typedef struct vs_fira_packet {
 // degrees: replacements turn robots in degrees (FIRASim), not radians (TraveSim).
 size_t vs_fira_packet_encode(const vs_fira_packet *packet, bool degrees, uint8_t *out, size_t out_size);
 vs_status vs_fira_packet_decode(const uint8_t *data, size_t size, bool degrees, vs_fira_packet *out, vs_error *err);
+// Leaves out, and counts as dropped, what a match of this division has not: its robots and its field.
+void vs_fira_packet_fit(vs_fira_packet *packet, vs_division division);
 
 // The referee's calls; the numbers are those of the wire.
 typedef enum vs_foul {
@@ -89,8 +93,8 @@ bool vs_ref_command_repeats(const vs_ref_command *before, const vs_ref_command *
 // Where a team wants its robots at a restart.
 typedef struct vs_ref_placement {
   vs_team team;
-  bool given[VS_TEAM_SIZE];
-  vs_pose pose[VS_TEAM_SIZE];
+  bool given[VS_TEAM_MOST];
+  vs_pose pose[VS_TEAM_MOST];
 } vs_ref_placement;
 size_t vs_ref_placement_encode(const vs_ref_placement *placement, uint8_t *out, size_t out_size);
 // VS_FAIL also for a pose that is not finite or outside the field, and for a team without colour.

@@ -17,7 +17,10 @@
 extern "C" {
 #endif
 
-#define VSSS_PLAYER_VERSION 1
+#define VSSS_PLAYER_VERSION                                                                                            \
+  2 // 2: worlds with room for five robots a team, and divisions; 1 goes on to be played, 3 against 3
+
+#define VSSS_PLAYS(division) (UINT32_C(1) << (division))
 
 typedef struct vsss_player_api {
   uint32_t version;  // VSSS_PLAYER_VERSION
@@ -30,10 +33,13 @@ typedef struct vsss_player_api {
   vs_status (*init)(void *state, uint64_t seed, const char *options, vs_error *err);
 
   // One call: the measured world and game as this team sees them (it attacks +x, robot[0] is its own team), dt_s since
-  // the last call; writes three wheel commands in rad/s (clamped by the caller to +-VS_WHEEL_LIMIT_RADPS).
-  void (*step)(void *state, const vs_world *world, const vs_game *game, double dt_s, vs_wheels out[VS_TEAM_SIZE]);
+  // the last call; writes a wheel command in rad/s for each of its robots (vs_team_size(world): three, or what its divisions
+  // say; clamped by the caller to +-VS_WHEEL_LIMIT_RADPS).
+  void (*step)(void *state, const vs_world *world, const vs_game *game, double dt_s, vs_wheels out[VS_TEAM_MOST]);
 
   void (*free)(void *state); // may be NULL: nothing beyond the block to release
+
+  uint32_t divisions; // 0: it plays 3 against 3 alone; else VSSS_PLAYS of each that it plays, or-ed
 } vsss_player_api;
 
 typedef const vsss_player_api *(*vsss_player_entry)(void); // the type of `vsss_player`

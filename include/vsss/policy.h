@@ -35,12 +35,15 @@ VSSS_API double vs_player_rate_hz(const vs_player *player);
 VSSS_API const char *vs_player_uri(const vs_player *player);
 VSSS_API const char *vs_player_name(const vs_player *player);
 
+// VS_USAGE with the reason where it cannot play a division.
+VSSS_API vs_status vs_player_plays(const vs_player *player, vs_division division, vs_error *err);
+
 // Start of a match: forget everything, draw from this seed.
 VSSS_API vs_status vs_player_reset(vs_player *player, uint64_t seed, vs_error *err);
 
-// VS_SEES_WORLD players. A command that is not finite is VS_FAIL, naming player, robot and value.
+// VS_SEES_WORLD players. out: [the view's team_size]. A command that is not finite is VS_FAIL, naming player, robot and value.
 VSSS_API vs_status vs_player_step(vs_player *player, const vs_world *view, const vs_game *game, double dt_s,
-                                  vs_wheels out[VS_TEAM_SIZE], vs_error *err);
+                                  vs_wheels *out, vs_error *err);
 
 // VS_SEES_OBSERVATION players: obs float[rows][VS_OBS_SIZE] -> action float[rows][VS_ACTION_SIZE] in [-1, 1].
 // Always evaluated in batches of VS_TEAM_SIZE rows, so that a result never depends on how many matches share a call.

@@ -6,6 +6,7 @@
 // referee of the simulation league, VSSSLeague/VSSReferee, tag LARC2022: also goal kicks, areas judged play by play).
 // Two more follow the texts for real robots, Serie A 2023 and LARC 2026, as far as positions show it; with LARC's the idle rule
 // is enforced (idle.h).
+// Any division (division.h): the worlds say which. What the texts say for 3 against 3 is judged alike in 5 against 5.
 // The league's pauses between whistle and restart are left out: a restart happens at once.
 #ifndef VSSS_REFEREE_H
 #define VSSS_REFEREE_H
@@ -37,9 +38,7 @@ typedef enum vs_placement_mode { VS_PLACEMENT_PAPER, VS_PLACEMENT_RANDOM } vs_pl
 #define VS_PUSH_BALL_M 0.20
 #define VS_PUSH_S      1.0
 // Serie A, LARC: a robot covers more than this share of the ball's diameter, as seen from above: it holds the ball.
-#define VS_HOLD_SHARE           0.30
-#define VS_LEAGUE_GOAL_KICK_X_M 0.60
-#define VS_LEAGUE_GOAL_KICK_Y_M 0.35
+#define VS_HOLD_SHARE 0.30
 
 // Extra time: two halves. Shoot-out: so many kicks each, from the penalty mark in turn, then in pairs until one is ahead;
 // after VS_SHOOT_OUT_MOST each a coin is thrown (ours: two teams that never score would not end). A kick is over with a goal,
@@ -122,7 +121,7 @@ VSSS_API vs_start vs_referee_start(vs_referee *referee, const vs_world *placed, 
 // Who is off until the half ends: to be put beside the field (vs_world_beside) and left out of restarts.
 VSSS_API bool vs_referee_off(const vs_referee *referee, vs_team team, int robot);
 // ... whose wheels stand still, whatever their team commands.
-VSSS_API void vs_referee_hold_off(const vs_referee *referee, vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE]);
+VSSS_API void vs_referee_hold_off(const vs_referee *referee, vs_wheels wheels[VS_TEAMS][VS_TEAM_MOST]);
 // After a placement: the clocks of stillness and of fouls start anew.
 VSSS_API void vs_referee_restarted(vs_referee *referee, const vs_world *world);
 
@@ -134,16 +133,16 @@ VSSS_API void vs_place(vs_placement_mode mode, const vs_event *event, const vs_w
                        vs_world *out);
 
 // PAPER's poses of one team at that restart; standing at the centre for events without a placement.
-VSSS_API void vs_place_team(const vs_event *event, vs_team team, vs_pose out[VS_TEAM_SIZE]);
+VSSS_API void vs_place_team(vs_division division, const vs_event *event, vs_team team, vs_pose *out /* [team_size] */);
 
 // Puts those that are off beside the field. The others of their team move up: the last one takes the place of a missing keeper
 // (robot 0) or taker (robot 1).
 VSSS_API void vs_place_without(const vs_referee *referee, vs_world *placed);
 
-// Whether a team may stand like this at that restart: inside the field, on nobody and not on the ball's place, where the
+// Whether a team may stand like this (pose: of each of its robots) at that restart: inside the field, on nobody and not on the ball's place, where the
 // rules let it, and with the robot that the restart needs (taker, keeper on its line). Absolute frame. VS_FAIL says which
 // robot and why. The fixed positions of vs_place pass.
-VSSS_API vs_status vs_placement_check(const vs_event *event, vs_team team, const vs_pose pose[VS_TEAM_SIZE],
+VSSS_API vs_status vs_placement_check(vs_division division, const vs_event *event, vs_team team, const vs_pose *pose,
                                       vs_error *err);
 
 // Open play, for the starts of training episodes: robots anywhere with any heading, the ball anywhere outside the areas

@@ -30,10 +30,11 @@ typedef struct vs_cap {
 
 typedef struct vs_render_def {
   vs_view view;
+  vs_division division;    // VS_3V3; the worlds that are drawn are of it
   int width_px, height_px; // 64..3840 x 64..2160
   // What each robot wears. rgb NULL: the team's colour with two identity patches, or for CAMERA a dark cap with a
   // team-coloured square of VS_RENDER_PATCH_M.
-  vs_cap cap[VS_TEAMS][VS_TEAM_SIZE];
+  vs_cap cap[VS_TEAMS][VS_TEAM_MOST];
   double camera_height_m; // CAMERA: lens over the floor; 2.2
   bool white_walls;       // CAMERA: instead of dark ones
   const char *title;      // BROADCAST: shown beside the score, such as "EMC  INF"; NULL: none. Copied.

@@ -50,7 +50,7 @@ VSSS_API vs_status vs_realism_parse(const char *name_for_errors, const char *tex
 VSSS_API vs_sim_params vs_realism_draw(const vs_realism *realism, uint64_t seed);
 
 #define VS_SENSOR_DELAY_FRAMES 8
-#define VS_SENSOR_OBJECTS      (VS_TEAMS * VS_TEAM_SIZE + 1) // the ball is last
+#define VS_SENSOR_OBJECTS      (VS_TEAMS * VS_TEAM_MOST + 1) // team * VS_TEAM_MOST + robot; the ball is last
 // How fast robots and ball may change their velocity: the deviations of the filter that estimates it, as in track.h.
 #define VS_SENSOR_ROBOT_ACCELERATION_MPS2  6.0
 #define VS_SENSOR_BALL_ACCELERATION_MPS2   20.0
@@ -71,8 +71,8 @@ typedef struct vs_sensors {
   bool filtering[VS_SENSOR_OBJECTS];      // ... seen since the last restart
   vs_world last;                          // each object's last measurement
   bool ever[VS_SENSOR_OBJECTS];           // seen since the reset
-  vs_wheels queue[VS_SENSOR_DELAY_FRAMES][VS_TEAMS][VS_TEAM_SIZE]; // newest first
-  vs_wheels applied[VS_TEAMS][VS_TEAM_SIZE];
+  vs_wheels queue[VS_SENSOR_DELAY_FRAMES][VS_TEAMS][VS_TEAM_MOST]; // newest first
+  vs_wheels applied[VS_TEAMS][VS_TEAM_MOST];
 } vs_sensors;
 
 // A new episode from this seed; give params to vs_sim_reset.
@@ -92,8 +92,8 @@ VSSS_API void vs_sensors_restart(vs_sensors *sensors);
 // Commands as decided in this frame -> commands at the robots, the mean over this frame. A delay of 1.8 frames mixes
 // the commands of one and two frames ago, 0.2 to 0.8. A team whose radio frame is lost keeps its last command. A robot that
 // is no longer seen is told to stand, as on the field.
-VSSS_API void vs_sensors_command(vs_sensors *sensors, const vs_wheels in[VS_TEAMS][VS_TEAM_SIZE],
-                                 vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]);
+VSSS_API void vs_sensors_command(vs_sensors *sensors, const vs_wheels in[VS_TEAMS][VS_TEAM_MOST],
+                                 vs_wheels out[VS_TEAMS][VS_TEAM_MOST]);
 
 #ifdef __cplusplus
 }

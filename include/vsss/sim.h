@@ -31,27 +31,30 @@ typedef struct vs_model vs_model; // constant after loading, shared by threads
 
 typedef struct vs_model_def {
   vs_drive drive;
-  const char *path;       // MJCF; NULL: models/vsss_<drive>.xml found by vs_path_find
+  vs_division division;   // VS_3V3
+  const char *path;       // MJCF; NULL: models/vsss_<drive>.xml, vsss_<drive>_5v5.xml, found by vs_path_find
   int substeps_per_frame; // physics steps per frame; 0: the drive's default
   int frame_hz;           // 0: VS_CAMERA_HZ, as everything above the simulator expects; others for bare simulations
 } vs_model_def;
 
 VSSS_API vs_model_def vs_model_def_default(vs_drive drive);
-// Loads the MJCF and checks every size against field.h: a difference is VS_FAIL naming body, value and the expected one.
+// Loads the MJCF and checks every size against field.h and division.h: a difference is VS_FAIL naming body, value and the expected one.
 VSSS_API vs_status vs_model_load(const vs_model_def *def, vs_model **out, vs_error *err);
 VSSS_API void vs_model_free(vs_model *model);
 VSSS_API double vs_model_step_s(const vs_model *model);
 VSSS_API int vs_model_frame_hz(const vs_model *model);
 VSSS_API int vs_model_substeps(const vs_model *model);
 VSSS_API vs_drive vs_model_drive(const vs_model *model);
+VSSS_API vs_division vs_model_division(const vs_model *model);
 VSSS_API const void *vs_model_mjmodel(const vs_model *model); // const mjModel *, for the renderer and the benchmarks
 
-// Physical parameters of one episode (domain randomisation); the default is the nominal robot.
+// Physical parameters of one episode (domain randomisation); the default is the nominal robot. Rows of robots that the
+// model has not count for nothing.
 typedef struct vs_sim_params {
-  double wheel_gain[VS_TEAMS][VS_TEAM_SIZE][2];      // left, right: reached speed / commanded speed; 1
-  double wheel_radius_scale[VS_TEAMS][VS_TEAM_SIZE]; // 1
-  double track_scale[VS_TEAMS][VS_TEAM_SIZE];        // 1
-  double com_offset_m[VS_TEAMS][VS_TEAM_SIZE][2];    // centre of mass off the middle: forward, left (planar:
+  double wheel_gain[VS_TEAMS][VS_TEAM_MOST][2];      // left, right: reached speed / commanded speed; 1
+  double wheel_radius_scale[VS_TEAMS][VS_TEAM_MOST]; // 1
+  double track_scale[VS_TEAMS][VS_TEAM_MOST];        // 1
+  double com_offset_m[VS_TEAMS][VS_TEAM_MOST][2];    // centre of mass off the middle: forward, left (planar:
                                                      // its effect on the wheels' loads only); 0
   double wheel_limit_scale;                          // battery: scales VS_WHEEL_LIMIT_RADPS; 1
   double motor_tau_s;                                // extra first-order lag of the wheel command; 0 = none
@@ -72,12 +75,12 @@ VSSS_API vs_status vs_sim_new(const vs_model *model, vs_sim **out, vs_error *err
 VSSS_API void vs_sim_free(vs_sim *sim);
 VSSS_API void
 vs_sim_reset(vs_sim *sim, const vs_sim_params *params /* NULL: default */); // time 0, everything at rest, kick-off line
-// Puts robots and ball where world says, robots at rest, wheels stopped, the ball rolling as fast as world says. Time goes on. No allocation, under 50 us.
+// Puts robots and ball where world (of the model's division) says, robots at rest, wheels stopped, the ball rolling as fast as world says. Time goes on. No allocation, under 50 us.
 VSSS_API void vs_sim_place(vs_sim *sim, const vs_world *world);
 // Puts one robot at rest beside the field, where it touches no wall (vs_world_beside); nothing else changes.
 VSSS_API void vs_sim_put_beside(vs_sim *sim, vs_team team, int robot);
 // One frame (1/30 s, or the model's) with the commands held. VS_FAIL: MuJoCo reported a warning (NaN, too many contacts), by name.
-VSSS_API vs_status vs_sim_frame(vs_sim *sim, const vs_wheels command[VS_TEAMS][VS_TEAM_SIZE], vs_error *err);
+VSSS_API vs_status vs_sim_frame(vs_sim *sim, const vs_wheels command[VS_TEAMS][VS_TEAM_MOST], vs_error *err);
 VSSS_API void vs_sim_world(const vs_sim *sim, vs_world *out); // the truth
 VSSS_API void *vs_sim_mjdata(vs_sim *sim);                    // mjData *, for the renderer
 

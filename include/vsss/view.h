@@ -12,10 +12,10 @@
 extern "C" {
 #endif
 
-// What the page needs of one moment: [seconds, ball, six robots, score, clock, commands, event]; the size written, as
+// What the page needs of one moment: [seconds, ball, six or ten robots with their commands, score, clock, event]; the size written, as
 // snprintf counts. wheels NULL: none known. event: text or "".
 int vs_view_frame(double time_s, const vs_world *world, const vs_game *game,
-                  const vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE], const char *event, char *out, size_t size);
+                  const vs_wheels wheels[VS_TEAMS][VS_TEAM_MOST], const char *event, char *out, size_t size);
 
 typedef struct vs_view vs_view;
 // page: path of the HTML file. data: what /data.json answers, stays the caller's. address: IPv4 of this machine to listen

@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 #include "vsss/api.h"
+#include "vsss/division.h"
 #include "vsss/status.h"
 
 #ifdef __cplusplus
@@ -19,7 +20,7 @@ extern "C" {
 #endif
 
 #define VS_TEAMS     2
-#define VS_TEAM_SIZE 3
+#define VS_TEAM_SIZE 3 // of 3 against 3: what the policy plays and our team has; others: division.h
 
 #define VS_CAMERA_HZ 30 // frames of the world per second, as the paper's camera gives them; policies see every third
 
@@ -48,7 +49,8 @@ typedef struct vs_ball {
 typedef struct vs_world {
   int64_t time_us; // of the measurement: simulated time, or mid-exposure on the monotonic clock
   uint32_t seq;    // counts frames
-  vs_robot robot[VS_TEAMS][VS_TEAM_SIZE];
+  vs_division division;
+  vs_robot robot[VS_TEAMS][VS_TEAM_MOST]; // the division's team_size, then zeros
   vs_ball ball;
 } vs_world;
 
@@ -97,12 +99,12 @@ VSSS_API void vs_game_for_team(const vs_game *absolute, vs_team team, vs_game *v
 
 // Where a robot that nobody has seen yet is taken to stand (absolute frame): in a corner of its own half beside its goal
 // area, out of play and inside what a policy knows. A team that plays alone meets nobody there.
-VSSS_API vs_pose vs_world_parked(vs_team team, int robot);
+VSSS_API vs_pose vs_world_parked(vs_division division, vs_team team, int robot);
 
 // Where a robot that was sent off stands: beside the field, out of everybody's reach (absolute frame). The simulator lets no
 // wall touch a robot that is further than VS_BESIDE_M from the field.
 #define VS_BESIDE_M 0.25
-VSSS_API vs_pose vs_world_beside(vs_team team, int robot);
+VSSS_API vs_pose vs_world_beside(vs_division division, vs_team team, int robot);
 
 // All numbers finite and within 1 m outside the field; names the first that is not.
 VSSS_API vs_status vs_world_check(const vs_world *world, vs_error *err);
@@ -111,10 +113,13 @@ VSSS_API vs_status vs_world_check(const vs_world *world, vs_error *err);
 // only a damaged snapshot holds.
 VSSS_API bool vs_world_ok(const vs_world *world);
 
-// FNV-1a over the bits of every number (not the padding): equal worlds, equal hash.
+// FNV-1a over the bits of every number (not the padding): equal worlds, equal hash. A division other than 3 against 3 counts too.
 VSSS_API uint64_t vs_world_hash(uint64_t hash, const vs_world *world); // start with VS_HASH_START
 #define VS_HASH_START UINT64_C(0xcbf29ce484222325)
 VSSS_API uint64_t vs_hash_bytes(uint64_t hash, const void *data, unsigned long size);
+
+// Robots a side.
+static inline int vs_team_size(const vs_world *world) { return vs_pitch_of(world->division)->team_size; }
 
 VSSS_API const char *vs_event_name(vs_event_kind kind); // "goal", "free ball", ...
 VSSS_API const char *vs_team_name(vs_team team);        // "blue", "yellow"

@@ -127,7 +127,7 @@ static double judge(vss_v0 *e, double rims_mps, bool *goal) {
 
 vs_status vss_v0_step(vss_v0 *e, vs_sim *sim, const float action[CAPI_VSS_ACTION], float *reward, bool *goal,
                       vs_error *err) {
-  vs_wheels command[VS_TEAMS][VS_TEAM_SIZE];
+  vs_wheels command[VS_TEAMS][VS_TEAM_MOST] = {{{0}}};
   for (int i = 0; i < ROBOTS; i++) {
     if (i > 0) drive_at_random(e, e->driver[i]);
     double left_mps = rim_mps(i == 0 ? action[0] : e->driver[i][0]);
@@ -135,7 +135,7 @@ vs_status vss_v0_step(vss_v0 *e, vs_sim *sim, const float action[CAPI_VSS_ACTION
     command[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE] =
         (vs_wheels){left_mps / VS_WHEEL_RADIUS_M, right_mps / VS_WHEEL_RADIUS_M};
   }
-  vs_status s = vs_sim_frame(sim, (const vs_wheels(*)[VS_TEAM_SIZE])command, err);
+  vs_status s = vs_sim_frame(sim, (const vs_wheels(*)[VS_TEAM_MOST])command, err);
   if (s != VS_OK)
     return vs_fail_prefix(err, "episode %llu of seed %llu", (unsigned long long)(e->episode - 1),
                           (unsigned long long)e->seed);

@@ -26,7 +26,8 @@ static const char about[] =
     "format = round-robin, knockout, or groups (groups = 2, advance = 2 of each go on to a knockout). A knockout match "
     "that\n"
     "is tied goes on to extra time and a shoot-out; seeds are in the file's order.\n\n"
-    "Others: rounds, pause, wait, silence, rules, dialect, robot, drive, ports, realtime, record, seed, own_network = "
+    "Others: rounds, pause, wait, silence, division, rules, dialect, robot, drive, ports, realtime, record, seed, "
+    "own_network = "
     "yes (the programs\n"
     "play in a network namespace of their own, where the system allows it; with no they share the machine's network).";
 

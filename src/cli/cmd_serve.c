@@ -17,7 +17,7 @@
 
 typedef struct serve_command {
   const char *uri[VS_TEAMS]; // "net" or a player's
-  const char *dialect, *rules, *referee, *ports, *interface, *robot, *drive, *record, *league_log, *replay;
+  const char *division, *dialect, *rules, *referee, *ports, *interface, *robot, *drive, *record, *league_log, *replay;
   double seconds, pause_s, wait_s, answer_s;
   int seed, rt;
   bool no_referee, knockout, sync, realtime, json;
@@ -63,7 +63,9 @@ static vs_status read_rules(serve_command *c, vs_error *err) {
 static vs_status prepare(serve_command *c, vs_error *err) {
   c->def = vs_serve_def_default();
   vs_drive drive;
+  vs_division division;
   vs_status s = vs_dialect_parse(c->dialect, &c->def.dialect, err);
+  if (s == VS_OK) s = vs_division_parse(c->division, &division, err);
   if (s == VS_OK) s = vs_drive_parse(c->drive, &drive, err);
   if (s == VS_OK) s = read_rules(c, err);
   if (s == VS_OK)
@@ -77,6 +79,7 @@ static vs_status prepare(serve_command *c, vs_error *err) {
   c->def.answer_s = c->answer_s;
   c->def.ends = vs_cli_interrupted;
   vs_model_def model = vs_model_def_default(drive);
+  model.division = division;
   model.frame_hz = vs_dialect_hz(c->def.dialect);
   model.substeps_per_frame = c->def.dialect == VS_DIALECT_TRAVESIM ? 2 : 3; // about 5 ms, as in sim
   s = vs_model_load(&model, &c->model, err);
@@ -87,8 +90,8 @@ static vs_status prepare(serve_command *c, vs_error *err) {
 static void print_head(const serve_command *c) {
   if (c->json) return;
   const vs_ports *p = &c->def.ports;
-  printf("%s (blue) against %s (yellow), %s rules%s, %s robots\n", c->uri[VS_BLUE], c->uri[VS_YELLOW], c->rules,
-         c->knockout ? ", knockout" : "", c->def.match.robot->name);
+  printf("%s (blue) against %s (yellow), %s, %s rules%s, %s robots\n", c->uri[VS_BLUE], c->uri[VS_YELLOW], c->division,
+         c->rules, c->knockout ? ", knockout" : "", c->def.match.robot->name);
   printf("world      to   %s:%d, %d a second of play\n", VS_VISION_GROUP, p->vision, vs_dialect_hz(c->def.dialect));
   const char *here = c->interface ? "0.0.0.0" : "127.0.0.1";
   if (c->def.dialect == VS_DIALECT_TRAVESIM)
@@ -214,8 +217,9 @@ static void print_json(const serve_command *c, double wall_s) {
   const vs_serve_stats *s = vs_serve_get_stats(c->server);
   const vs_hosted *match = vs_serve_match(c->server);
   const vs_game *game = vs_hosted_game(match);
-  printf("{\"command\": \"serve\", \"dialect\": \"%s\", \"rules\": \"%s\", \"robot\": \"%s\", \"seed\": %d,\n",
-         vs_dialect_name(c->def.dialect), c->rules, c->def.match.robot->name, c->seed);
+  printf("{\"command\": \"serve\", \"division\": \"%s\", \"dialect\": \"%s\", \"rules\": \"%s\", \"robot\": \"%s\", "
+         "\"seed\": %d,\n",
+         c->division, vs_dialect_name(c->def.dialect), c->rules, c->def.match.robot->name, c->seed);
   printf(" \"complete\": %s, \"score\": [%d, %d], \"time_s\": %.3f, \"hash\": \"%016" PRIx64 "\",\n",
          vs_hosted_phase(match) == VS_PHASE_OVER ? "true" : "false", game->score[VS_BLUE], game->score[VS_YELLOW],
          game->time_s, vs_hosted_hash(match));
@@ -270,6 +274,7 @@ static void print_end(const serve_command *c) {
 
 int cmd_serve(int argc, char **argv) {
   serve_command c = {.uri = {"net", "net"},
+                     .division = "3v3",
                      .dialect = "firasim",
                      .rules = "league",
                      .referee = "own",
@@ -281,6 +286,7 @@ int cmd_serve(int argc, char **argv) {
   const vs_flag flags[] = {
       {"blue", VS_FLAG_TEXT, &c.uri[VS_BLUE], "URI|net", "who attacks +x", 0, 0},
       {"yellow", VS_FLAG_TEXT, &c.uri[VS_YELLOW], "URI|net", "who attacks -x", 0, 0},
+      {"division", VS_FLAG_TEXT, &c.division, "NAME", "3v3, or 5v5: five robots a team on 2.2 x 1.8 m", 0, 0},
       {"dialect", VS_FLAG_TEXT, &c.dialect, "NAME", "firasim, or travesim (100 Hz, a port for each team)", 0, 0},
       {"robot", VS_FLAG_TEXT, &c.robot, "NAME", "paper, firasim or travesim: wheels and drive [the dialect's]", 0, 0},
       {"rules", VS_FLAG_TEXT, &c.rules, "NAME", "paper, league (the network referee's), serie-a-2023 or larc-2026", 0,

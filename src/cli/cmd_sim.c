@@ -100,7 +100,7 @@ static vs_status open_watchers(sim_command *c, vs_error *err) {
   if (s == VS_OK && c->video) {
     char title[128];
     snprintf(title, sizeof title, "%s  %s", name_of(c, VS_BLUE), name_of(c, VS_YELLOW));
-    s = vs_watch_video(c->video, title, &c->watcher[c->watchers], err);
+    s = vs_watch_video(c->video, title, vs_model_division(c->env.model), &c->watcher[c->watchers], err);
     if (s == VS_OK) c->watchers++;
   }
   c->pace = pace_of(c);
@@ -288,7 +288,7 @@ static const char *default_blue(void) {
 int cmd_sim(int argc, char **argv) {
   sim_command c = {.match = vs_match_flags_default(), .uri = {NULL, DEFAULT_YELLOW}, .matches = 1};
   const vs_flag flags[] = {
-      {"blue", VS_FLAG_TEXT, &c.uri[VS_BLUE], "URI", "player that attacks +x [onnx:, our policy]", 0, 0},
+      {"blue", VS_FLAG_TEXT, &c.uri[VS_BLUE], "URI", "player that attacks +x [onnx:, our policy; 5v5: emc:]", 0, 0},
       {"yellow", VS_FLAG_TEXT, &c.uri[VS_YELLOW], "URI", "player that attacks -x", 0, 0},
       {"matches", VS_FLAG_INT, &c.matches, "N", "how many", 1, 1000000},
       {"match", VS_FLAG_INT, &c.only, "K", "only match K of the series that --seed begins, as it was; 0: all", 0,
@@ -313,7 +313,9 @@ int cmd_sim(int argc, char **argv) {
     s = vs_fail(&err, VS_USAGE, "--match plays one match: leave --matches out");
   vs_model *model = NULL;
   if (s == VS_OK) s = vs_match_flags_open(&c.match, &model, &c.env, &err);
-  if (s == VS_OK && !c.uri[VS_BLUE]) c.uri[VS_BLUE] = default_blue();
+  // Our policy is 3 against 3's.
+  bool threes = s == VS_OK && vs_model_division(model) == VS_3V3;
+  if (s == VS_OK && !c.uri[VS_BLUE]) c.uri[VS_BLUE] = threes ? default_blue() : "emc:";
   if (s == VS_OK) {
     for (int t = 0; t < VS_TEAMS; t++) c.env.player[t] = c.uri[t];
     c.results = calloc((size_t)c.matches, sizeof *c.results);

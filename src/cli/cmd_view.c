@@ -21,7 +21,7 @@ typedef struct view_command {
   double seconds;
 
   vs_view *view;
-  vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE];
+  vs_wheels wheels[VS_TEAMS][VS_TEAM_MOST];
   char event[64];
   int64_t sent_us;
 } view_command;
@@ -54,7 +54,7 @@ static vs_status write_frames(view_command *c, vs_bus_log *log, vs_channel chann
     if (*count == 0) first_us = at_us;
     double time_s = 1e-6 * (double)(at_us - first_us);
     if (time_s < last_s + FRAME_STEP_S && time_s >= last_s && !*c->event) continue;
-    int n = vs_view_frame(time_s, &m.as.world.world, &m.as.world.game, (const vs_wheels(*)[VS_TEAM_SIZE])c->wheels,
+    int n = vs_view_frame(time_s, &m.as.world.world, &m.as.world.game, (const vs_wheels(*)[VS_TEAM_MOST])c->wheels,
                           c->event, text, sizeof text);
     c->event[0] = '\0';
     last_s = time_s;
@@ -102,7 +102,7 @@ static void on_message(const vs_message *m, void *user) {
   if (now_us - c->sent_us < 25000 && !*c->event) return;
   c->sent_us = now_us;
   int n = vs_view_frame(1e-6 * (double)now_us, &m->as.world.world, &m->as.world.game,
-                        (const vs_wheels(*)[VS_TEAM_SIZE])c->wheels, c->event, text, sizeof text);
+                        (const vs_wheels(*)[VS_TEAM_MOST])c->wheels, c->event, text, sizeof text);
   c->event[0] = '\0';
   if (n < 1 || (size_t)n + 24 > sizeof text) return;
   // The frame's last field: how old it is, from its capture to here.

@@ -2,11 +2,13 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
 vs_match_flags vs_match_flags_default(void) {
   long processors = sysconf(_SC_NPROCESSORS_ONLN);
-  return (vs_match_flags){.drive = "contact",
+  return (vs_match_flags){.division = "3v3",
+                          .drive = "contact",
                           .rules = "paper",
                           .placement = "paper",
                           .predicts = "learned",
@@ -15,12 +17,14 @@ vs_match_flags vs_match_flags_default(void) {
 }
 
 vs_status vs_match_flags_open(vs_match_flags *flags, vs_model **model, vs_env_def *env, vs_error *err) {
+  vs_division division;
   vs_drive drive;
   vs_rules rules;
   vs_placement_mode placement;
   vs_realism realism = vs_realism_default();
   vs_predicts predicts;
-  vs_status s = vs_drive_parse(flags->drive, &drive, err);
+  vs_status s = vs_division_parse(flags->division, &division, err);
+  if (s == VS_OK) s = vs_drive_parse(flags->drive, &drive, err);
   if (s == VS_OK) s = vs_rules_parse(flags->rules, &rules, err);
   if (s == VS_OK) s = vs_placement_parse(flags->placement, &placement, err);
   if (s == VS_OK) s = vs_predicts_parse(flags->predicts, &predicts, err);
@@ -28,6 +32,7 @@ vs_status vs_match_flags_open(vs_match_flags *flags, vs_model **model, vs_env_de
   if (s != VS_OK) return s;
 
   vs_model_def model_def = vs_model_def_default(drive);
+  model_def.division = division;
   s = vs_model_load(&model_def, model, err);
   if (s != VS_OK) return s;
   *env = vs_env_def_default(*model);
@@ -49,7 +54,9 @@ void vs_match_flags_about(const char *about, char *out, size_t size) {
 }
 
 void vs_match_flags_describe(const vs_match_flags *flags, char *out, size_t size) {
-  snprintf(out, size, "%s drive, %s rules%s, %s placement, %g s, seed %" PRIu64 "%s%s", flags->drive, flags->rules,
+  bool threes = !strcmp(flags->division, "3v3");
+  snprintf(out, size, "%s%s%s drive, %s rules%s, %s placement, %g s, seed %" PRIu64 "%s%s",
+           threes ? "" : flags->division, threes ? "" : ", ", flags->drive, flags->rules,
            flags->knockout ? ", knockout" : "", flags->placement, flags->seconds, flags->seed,
            flags->realism ? ", realism " : "", flags->realism ? flags->realism : "");
 }

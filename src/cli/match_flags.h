@@ -6,7 +6,7 @@
 #include "vsss/env.h"
 
 typedef struct vs_match_flags {
-  const char *drive, *rules, *placement, *realism, *predicts;
+  const char *division, *drive, *rules, *placement, *realism, *predicts;
   bool knockout;
   double seconds;
   uint64_t seed;
@@ -21,6 +21,7 @@ vs_match_flags_default(void); // contact drive, paper rules and their length, se
   {"seconds", VS_FLAG_REAL, &(m).seconds, "S", "length of a match, simulated; 0: 120, or the league's 600", 0, 7200},    \
       {"seed", VS_FLAG_SEED, &(m).seed, "N", "same seed, same matches, for any number of threads", 0, 0},                \
       {"threads", VS_FLAG_INT, &(m).threads, "N", "matches played at a time", 1, 1024},                                  \
+      {"division", VS_FLAG_TEXT, &(m).division, "NAME", "3v3, or 5v5: five robots a team on 2.2 x 1.8 m", 0, 0},         \
       {"drive", VS_FLAG_TEXT, &(m).drive, "NAME", "contact (the reference) or planar (the fast twin)", 0, 0},            \
       {"rules", VS_FLAG_TEXT, &(m).rules, "NAME", "paper, league (the network referee's), serie-a-2023 or larc-2026", 0, \
        0},                                                                                                               \

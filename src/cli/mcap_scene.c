@@ -73,7 +73,7 @@ static void add_robots(text *t, const vs_world *w, uint64_t time_ns) {
   begin_entity(t, "robots", time_ns);
   add(t, "\"cubes\":[");
   for (int team = 0; team < VS_TEAMS; team++)
-    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    for (int i = 0, n = vs_team_size(w); i < n; i++) {
       const vs_robot *r = &w->robot[team][i];
       if (!r->valid) continue;
       add(t, "%s", cubes++ ? "," : "");
@@ -81,7 +81,7 @@ static void add_robots(text *t, const vs_world *w, uint64_t time_ns) {
     }
   add(t, "],\"arrows\":["); // where they look, on their lids
   for (int team = 0; team < VS_TEAMS; team++)
-    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    for (int i = 0, n = vs_team_size(w); i < n; i++) {
       const vs_robot *r = &w->robot[team][i];
       if (!r->valid) continue;
       add(t, "%s{", arrows++ ? "," : "");
@@ -101,17 +101,16 @@ static void add_ball(text *t, const vs_ball *b, uint64_t time_ns) {
   add(t, "]}");
 }
 
-static void add_field(text *t, uint64_t time_ns) {
+static void add_field(text *t, const vs_pitch *pitch, uint64_t time_ns) {
   const colour floor = {0.1, 0.1, 0.1}, goal = {0.3, 0.3, 0.3};
-  const double thick_m = 0.002, goal_x_m = VS_FIELD_HALF_LENGTH_M + VS_GOAL_DEPTH_M / 2;
+  const double thick_m = 0.002, goal_x_m = pitch->half_length_m + pitch->goal_depth_m / 2;
   begin_entity(t, "field", time_ns);
   add(t, "\"cubes\":[");
-  add_solid(t, &(vs_pose){0, 0, 0}, -thick_m / 2, 2 * VS_FIELD_HALF_LENGTH_M, 2 * VS_FIELD_HALF_WIDTH_M, thick_m,
-            floor);
+  add_solid(t, &(vs_pose){0, 0, 0}, -thick_m / 2, 2 * pitch->half_length_m, 2 * pitch->half_width_m, thick_m, floor);
   for (int side = -1; side <= 1; side += 2) {
     add(t, ",");
-    add_solid(t, &(vs_pose){side * goal_x_m, 0, 0}, -thick_m / 2, VS_GOAL_DEPTH_M, 2 * VS_GOAL_HALF_WIDTH_M, thick_m,
-              goal);
+    add_solid(t, &(vs_pose){side * goal_x_m, 0, 0}, -thick_m / 2, pitch->goal_depth_m, 2 * pitch->goal_half_width_m,
+              thick_m, goal);
   }
   add(t, "]}");
 }
@@ -120,7 +119,7 @@ void mcap_scene(const vs_world *w, uint64_t time_ns, bool with_field, char out[M
   text t = {out, 0};
   add(&t, "{\"deletions\":[],\"entities\":[");
   if (with_field) {
-    add_field(&t, time_ns);
+    add_field(&t, vs_pitch_of(w->division), time_ns);
     add(&t, ",");
   }
   add_robots(&t, w, time_ns);

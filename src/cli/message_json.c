@@ -99,7 +99,7 @@ static void world(json *j, const vs_msg_world *m) {
   close(j, '}');
   for (int team = 0; team < VS_TEAMS; team++) {
     open(j, vs_team_name((vs_team)team), '[');
-    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    for (int i = 0, n = vs_team_size(w); i < n; i++) {
       const vs_robot *r = &w->robot[team][i];
       open(j, NULL, '{');
       boolean(j, "valid", r->valid);
@@ -128,7 +128,8 @@ static void cmd(json *j, const vs_msg_cmd *c) {
   boolean(j, "stop", c->stop);
   whole(j, "state_seq", c->state_seq);
   open(j, "wheels_radps", '[');
-  for (int i = 0; i < VS_TEAM_SIZE; i++) pair(j, NULL, c->wheels[i].left_radps, c->wheels[i].right_radps);
+  for (int i = 0; i < vs_pitch_of(c->division)->team_size; i++)
+    pair(j, NULL, c->wheels[i].left_radps, c->wheels[i].right_radps);
   close(j, ']');
 }
 

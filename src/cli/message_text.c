@@ -53,7 +53,7 @@ static void world_text(const vs_msg_world *m, text *t) {
   else
     add(t, "ball lost");
   for (int team = 0; team < VS_TEAMS; team++)
-    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    for (int i = 0, n = vs_team_size(w); i < n; i++) {
       const vs_robot *r = &w->robot[team][i];
       add(t, "  %c%d", team == VS_BLUE ? 'b' : 'y', i);
       if (r->valid)
@@ -101,7 +101,7 @@ void vs_message_text(const vs_message *m, char *out, size_t size) {
   case VS_CH_STATE: world_text(&m->as.world, &t); break;
   case VS_CH_CMD:
     add(&t, "%s %s%s", vs_team_name(m->as.cmd.team), m->as.cmd.source, m->as.cmd.stop ? "  STOP" : "");
-    for (int i = 0; i < VS_TEAM_SIZE; i++)
+    for (int i = 0; i < vs_pitch_of(m->as.cmd.division)->team_size; i++)
       add(&t, "  %+.1f %+.1f", m->as.cmd.wheels[i].left_radps, m->as.cmd.wheels[i].right_radps);
     add(&t, " rad/s");
     break;

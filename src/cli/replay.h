@@ -20,6 +20,7 @@ typedef struct replay_summary {
   int n_channels;
   replay_channel channel[REPLAY_CHANNELS_MAX];
   bool have_game, have_truth, have_state;
+  vs_division division;               // of the last world
   bool found_wanted;                  // a message of a channel that was asked for
   int matches;                        // ends seen
   vs_game game;                       // the last known

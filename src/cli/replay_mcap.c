@@ -41,9 +41,9 @@ static const mcap_topic topics[TOPICS] = {
     {"scene", mcap_scene_schema, MCAP_SCENE_SCHEMA_NAME},
 };
 
-static int add_robots(char *out, size_t size, const vs_robot robot[VS_TEAM_SIZE]) {
+static int add_robots(char *out, size_t size, const vs_robot robot[VS_TEAM_MOST]) {
   int n = snprintf(out, size, "["), some = 0;
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+  for (int i = 0; i < VS_TEAM_MOST; i++) { // those that the division has not are not valid
     const vs_robot *r = &robot[i];
     if (!r->valid) continue;
     n += snprintf(out + n, size - (size_t)n,
@@ -66,7 +66,7 @@ static void put_scene(mcap_file *f, uint64_t ns, const vs_world *w, uint64_t *be
 
 // A world with a number that is none, as in a damaged log, has no JSON.
 static void put_world(mcap_file *f, uint64_t ns, const vs_msg_world *m, uint64_t *scene_ns) {
-  char json[2048];
+  char json[3072];
   if (!vs_world_ok(&m->world) || !isfinite(m->game.time_s)) return;
   put_scene(f, ns, &m->world, scene_ns);
   const vs_ball *b = &m->world.ball;
@@ -94,19 +94,25 @@ static void put_score(mcap_file *f, uint64_t ns, double time_s, const int score[
 
 static void put_command(mcap_file *f, uint64_t ns, const vs_msg_cmd *m) {
   char json[512];
-  const vs_wheels *w = m->wheels;
-  if (!vs_all_finite(&w[0].left_radps, 2 * VS_TEAM_SIZE)) return;
-  snprintf(json, sizeof json,
-           "{\"team\":\"%s\",\"stop\":%s,\"left_radps\":[%.4f,%.4f,%.4f],\"right_radps\":[%.4f,%.4f,%.4f]}",
-           vs_team_name(m->team), m->stop ? "true" : "false", w[0].left_radps, w[1].left_radps, w[2].left_radps,
-           w[0].right_radps, w[1].right_radps, w[2].right_radps);
+  const int robots = vs_pitch_of(m->division)->team_size;
+  if (!vs_all_finite(&m->wheels[0].left_radps, 2 * VS_TEAM_MOST)) return;
+  int n =
+      snprintf(json, sizeof json, "{\"team\":\"%s\",\"stop\":%s", vs_team_name(m->team), m->stop ? "true" : "false");
+  for (int side = 0; side < 2; side++) {
+    n += snprintf(json + n, sizeof json - (size_t)n, ",\"%s_radps\":[", side == 0 ? "left" : "right");
+    for (int i = 0; i < robots; i++)
+      n += snprintf(json + n, sizeof json - (size_t)n, "%s%.4f", i ? "," : "",
+                    side == 0 ? m->wheels[i].left_radps : m->wheels[i].right_radps);
+    n += snprintf(json + n, sizeof json - (size_t)n, "]");
+  }
+  snprintf(json + n, sizeof json - (size_t)n, "}");
   mcap_message(f, COMMANDS, ns, json);
 }
 
-static void put_field(mcap_file *f, uint64_t ns) {
+static void put_field(mcap_file *f, uint64_t ns, const vs_pitch *pitch) {
   char json[256];
   snprintf(json, sizeof json, "{\"length_m\":%.3f,\"width_m\":%.3f,\"goal_width_m\":%.3f,\"goal_depth_m\":%.3f}",
-           2 * VS_FIELD_HALF_LENGTH_M, 2 * VS_FIELD_HALF_WIDTH_M, 2 * VS_GOAL_HALF_WIDTH_M, VS_GOAL_DEPTH_M);
+           2 * pitch->half_length_m, 2 * pitch->half_width_m, 2 * pitch->goal_half_width_m, pitch->goal_depth_m);
   mcap_message(f, FIELD, ns, json);
 }
 
@@ -120,7 +126,7 @@ static void put_message(mcap_file *f, uint64_t ns, const vs_message *m, uint64_t
   }
 }
 
-static vs_status convert(vs_bus_log *log, vs_channel world, mcap_file *f, vs_error *err) {
+static vs_status convert(vs_bus_log *log, vs_channel world, vs_division division, mcap_file *f, vs_error *err) {
   vs_message *m = malloc(sizeof *m);
   if (!m) return vs_fail(err, VS_FAIL, "out of memory");
   vs_status s = VS_OK;
@@ -138,7 +144,7 @@ static vs_status convert(vs_bus_log *log, vs_channel world, mcap_file *f, vs_err
     // When it was, not when it was written: a match played faster than real time is watched at its own pace.
     int64_t utime_us = m->utime_us > 0 ? m->utime_us : event.utime_us;
     uint64_t ns = utime_us > 0 ? 1000 * (uint64_t)utime_us : 0;
-    if (f->messages[FIELD] == 0) put_field(f, ns);
+    if (f->messages[FIELD] == 0) put_field(f, ns, vs_pitch_of(division));
     put_message(f, ns, m, &scene_ns);
   }
   free(m);
@@ -151,7 +157,7 @@ vs_status replay_mcap(vs_bus_log *log, const replay_summary *summary, const char
   mcap_file f;
   vs_status s = mcap_open(path, topics, TOPICS, &f, err);
   if (s != VS_OK) return s;
-  s = convert(log, summary->have_truth ? VS_CH_TRUTH : VS_CH_STATE, &f, err);
+  s = convert(log, summary->have_truth ? VS_CH_TRUTH : VS_CH_STATE, summary->division, &f, err);
   vs_status closed = mcap_close(&f, s == VS_OK ? err : NULL);
   if (s == VS_OK) s = closed;
   if (s == VS_OK)

@@ -44,6 +44,7 @@ static void learn(replay_summary *s, const vs_message *m) {
     if (m->channel == VS_CH_TRUTH) s->have_truth = true;
     if (m->channel == VS_CH_STATE) s->have_state = true;
     s->game = m->as.world.game;
+    s->division = m->as.world.world.division;
     s->have_game = true;
     break;
   case VS_CH_REFEREE:

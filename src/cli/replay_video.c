@@ -67,6 +67,7 @@ vs_status replay_video(vs_bus_log *log, const replay_summary *summary, const cha
   def.width_px = WIDTH;
   def.height_px = HEIGHT;
   def.title = title;
+  def.division = summary->division;
   movie m = {0};
   vs_status s = vs_render_new(&def, &m.render, err);
   if (s != VS_OK) return s;

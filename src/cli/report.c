@@ -170,10 +170,11 @@ static void json_number(FILE *out, const char *name, double value) {
 
 void vs_report_json_flags(FILE *out, const vs_match_flags *flags) {
   fprintf(out,
-          "\"drive\": \"%s\", \"rules\": \"%s\", \"knockout\": %s, \"placement\": \"%s\", \"seconds\": %g, \"seed\": "
+          "\"division\": \"%s\", \"drive\": \"%s\", \"rules\": \"%s\", \"knockout\": %s, \"placement\": \"%s\", "
+          "\"seconds\": %g, \"seed\": "
           "%" PRIu64 ", \"realism\": ",
-          flags->drive, flags->rules, flags->knockout ? "true" : "false", flags->placement, flags->seconds,
-          flags->seed);
+          flags->division, flags->drive, flags->rules, flags->knockout ? "true" : "false", flags->placement,
+          flags->seconds, flags->seed);
   if (flags->realism)
     vs_json_put(out, flags->realism);
   else

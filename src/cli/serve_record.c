@@ -41,7 +41,7 @@ static vs_status put(serve_record *r, vs_channel channel, int64_t time_us, vs_er
 vs_status serve_record_frame(serve_record *r, const vs_hosted *match, const vs_hosted_said *said, vs_error *err) {
   const vs_world *world = vs_hosted_world(match);
   const vs_game *game = vs_hosted_game(match);
-  vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE];
+  vs_wheels wheels[VS_TEAMS][VS_TEAM_MOST];
   vs_hosted_wheels(match, wheels);
   vs_msg_world *w = &r->message.as.world;
   w->world = *world;
@@ -51,7 +51,8 @@ vs_status serve_record_frame(serve_record *r, const vs_hosted *match, const vs_h
   for (int t = 0; t < VS_TEAMS && s == VS_OK; t++) {
     vs_msg_cmd *m = &r->message.as.cmd;
     m->team = (vs_team)t;
-    for (int i = 0; i < VS_TEAM_SIZE; i++) m->wheels[i] = wheels[t][i];
+    m->division = world->division;
+    for (int i = 0; i < VS_TEAM_MOST; i++) m->wheels[i] = wheels[t][i];
     m->stop = false;
     m->state_seq = (int64_t)world->seq - 1;
     snprintf(m->source, sizeof m->source, "%s", r->uri[t]);

@@ -21,6 +21,6 @@ typedef struct vs_watcher {
 vs_status vs_watch_bus(const char *url, const char *const uri[VS_TEAMS], vs_watcher *out, vs_error *err);
 
 // Writes an MP4 of the matches, off screen.
-vs_status vs_watch_video(const char *path, const char *title, vs_watcher *out, vs_error *err);
+vs_status vs_watch_video(const char *path, const char *title, vs_division division, vs_watcher *out, vs_error *err);
 
 #endif

@@ -36,14 +36,15 @@ static void send_worlds(bus_watch *w, const vs_env *env) {
 }
 
 static void send_commands(bus_watch *w, const vs_env *env) {
-  vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE];
+  vs_wheels wheels[VS_TEAMS][VS_TEAM_MOST];
   vs_world measured;
   vs_env_wheels(env, wheels);
   vs_env_measured(env, &measured);
   for (int t = 0; t < VS_TEAMS; t++) {
     vs_msg_cmd *m = &w->message.as.cmd;
     m->team = (vs_team)t;
-    for (int i = 0; i < VS_TEAM_SIZE; i++) m->wheels[i] = wheels[t][i];
+    m->division = measured.division;
+    for (int i = 0; i < VS_TEAM_MOST; i++) m->wheels[i] = wheels[t][i];
     m->stop = false;
     m->state_seq = (int64_t)measured.seq - 1; // decided on the frame before
     snprintf(m->source, sizeof m->source, "%s", w->uri[t]);

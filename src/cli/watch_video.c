@@ -59,9 +59,10 @@ static vs_status close_video(void *state, vs_error *err) {
   return s;
 }
 
-vs_status vs_watch_video(const char *path, const char *title, vs_watcher *out, vs_error *err) {
+vs_status vs_watch_video(const char *path, const char *title, vs_division division, vs_watcher *out, vs_error *err) {
   vs_render_def def = vs_render_def_default(VS_VIEW_BROADCAST);
   def.title = title;
+  def.division = division;
   video_watch *w = calloc(1, sizeof *w);
   if (!w) return vs_fail(err, VS_FAIL, "out of memory for pictures");
   snprintf(w->title, sizeof w->title, "%s", title ? title : "");

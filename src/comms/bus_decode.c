@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bus_internal.h"
+#include "lcm/vsss_cmd_5v5_t.h"
 #include "lcm/vsss_cmd_t.h"
 #include "lcm/vsss_detections_t.h"
 #include "lcm/vsss_image_t.h"
@@ -11,6 +12,7 @@
 #include "lcm/vsss_radio_t.h"
 #include "lcm/vsss_referee_t.h"
 #include "lcm/vsss_stats_t.h"
+#include "lcm/vsss_world_5v5_t.h"
 #include "lcm/vsss_world_t.h"
 
 #define STAMP_FROM(m, t) ((m)->utime_us = (t)->utime, (m)->utime_capture_us = (t)->utime_capture, (m)->seq = (t)->seq)
@@ -19,54 +21,76 @@
 static int kind_of(int value, int count) { return value >= 0 && value < count ? value : 0; }
 static int clip(int n, int max) { return n < 0 ? 0 : n > max ? max : n; }
 
-static bool decode_world(const uint8_t *data, int size, vs_message *m) {
-  vsss_world_t t;
-  if (vsss_world_t_decode(data, 0, size, &t) != size) return false;
-  STAMP_FROM(m, &t);
-  vs_world *w = &m->as.world.world;
-  w->time_us = t.time_us;
-  w->seq = (uint32_t)t.seq;
+static void take_robots(const vs_wire_robots *from, vs_world *w) {
+  memset(w->robot, 0, sizeof w->robot);
   for (int team = 0; team < VS_TEAMS; team++)
-    for (int i = 0; i < VS_TEAM_SIZE; i++)
-      w->robot[team][i] = (vs_robot){
-          .pose = {t.robot_x_m[team][i], t.robot_y_m[team][i], t.robot_theta_rad[team][i]},
-          .vx_mps = t.robot_vx_mps[team][i],
-          .vy_mps = t.robot_vy_mps[team][i],
-          .omega_radps = t.robot_omega_radps[team][i],
-          .left_radps = t.robot_left_radps[team][i],
-          .right_radps = t.robot_right_radps[team][i],
-          .valid = t.robot_valid[team][i] != 0,
-      };
-  w->ball = (vs_ball){.x_m = t.ball_x_m,
-                      .y_m = t.ball_y_m,
-                      .z_m = t.ball_z_m,
-                      .vx_mps = t.ball_vx_mps,
-                      .vy_mps = t.ball_vy_mps,
-                      .vz_mps = t.ball_vz_mps,
-                      .valid = t.ball_valid != 0};
-  m->as.world.game = (vs_game){
-      .time_s = t.game_time_s,
-      .duration_s = t.game_duration_s,
-      .score = {t.score[0], t.score[1]},
-      .last_event = {(vs_event_kind)kind_of(t.event_kind, VS_EVENT_KINDS), (vs_team)kind_of(t.event_team, VS_TEAMS),
-                     clip(t.event_quadrant, 4), t.event_time_s},
-  };
-  m->as.world.asks_team = t.asks_team >= 0 && t.asks_team < VS_TEAMS ? t.asks_team : -1;
-  return true;
+    for (int i = 0; i < from->team_size; i++) {
+      int k = team * from->team_size + i;
+      w->robot[team][i] = (vs_robot){.pose = {from->x_m[k], from->y_m[k], from->theta_rad[k]},
+                                     .vx_mps = from->vx_mps[k],
+                                     .vy_mps = from->vy_mps[k],
+                                     .omega_radps = from->omega_radps[k],
+                                     .left_radps = from->left_radps[k],
+                                     .right_radps = from->right_radps[k],
+                                     .valid = from->valid[k] != 0};
+    }
 }
 
-static bool decode_cmd(const uint8_t *data, int size, vs_message *m) {
-  vsss_cmd_t t;
-  if (vsss_cmd_t_decode(data, 0, size, &t) != size) return false;
-  STAMP_FROM(m, &t);
+// One body for both types, which differ in the sizes of their arrays alone.
+#define DECODE_WORLD(type, of_division, size_of_team)                                                                  \
+  do {                                                                                                                 \
+    type t;                                                                                                            \
+    if (type##_decode(data, 0, size, &t) != size) return false;                                                        \
+    const vs_wire_robots robots = VS_WIRE_ROBOTS(&t, size_of_team);                                                    \
+    STAMP_FROM(m, &t);                                                                                                 \
+    w->time_us = t.time_us;                                                                                            \
+    w->seq = (uint32_t)t.seq;                                                                                          \
+    w->division = (of_division);                                                                                       \
+    take_robots(&robots, w);                                                                                           \
+    w->ball = (vs_ball){.x_m = t.ball_x_m,                                                                             \
+                        .y_m = t.ball_y_m,                                                                             \
+                        .z_m = t.ball_z_m,                                                                             \
+                        .vx_mps = t.ball_vx_mps,                                                                       \
+                        .vy_mps = t.ball_vy_mps,                                                                       \
+                        .vz_mps = t.ball_vz_mps,                                                                       \
+                        .valid = t.ball_valid != 0};                                                                   \
+    m->as.world.game = (vs_game){                                                                                      \
+        .time_s = t.game_time_s,                                                                                       \
+        .duration_s = t.game_duration_s,                                                                               \
+        .score = {t.score[0], t.score[1]},                                                                             \
+        .last_event = {(vs_event_kind)kind_of(t.event_kind, VS_EVENT_KINDS), (vs_team)kind_of(t.event_team, VS_TEAMS), \
+                       clip(t.event_quadrant, 4), t.event_time_s},                                                     \
+    };                                                                                                                 \
+    m->as.world.asks_team = t.asks_team >= 0 && t.asks_team < VS_TEAMS ? t.asks_team : -1;                             \
+    return true;                                                                                                       \
+  } while (0)
+
+static bool decode_world(const uint8_t *data, int size, vs_message *m, vs_division division) {
+  vs_world *w = &m->as.world.world;
+  if (division == VS_5V5) DECODE_WORLD(vsss_world_5v5_t, VS_5V5, 5);
+  DECODE_WORLD(vsss_world_t, VS_3V3, VS_TEAM_SIZE);
+}
+
+#define DECODE_CMD(type, of_division, size_of_team)                                                                    \
+  do {                                                                                                                 \
+    type t;                                                                                                            \
+    if (type##_decode(data, 0, size, &t) != size) return false;                                                        \
+    STAMP_FROM(m, &t);                                                                                                 \
+    c->team = (vs_team)kind_of(t.team, VS_TEAMS);                                                                      \
+    c->division = (of_division);                                                                                       \
+    memset(c->wheels, 0, sizeof c->wheels);                                                                            \
+    for (int i = 0; i < (size_of_team); i++) c->wheels[i] = (vs_wheels){t.left_radps[i], t.right_radps[i]};            \
+    c->stop = t.stop != 0;                                                                                             \
+    c->state_seq = t.state_seq;                                                                                        \
+    snprintf(c->source, sizeof c->source, "%s", t.source);                                                             \
+    type##_decode_cleanup(&t);                                                                                         \
+    return true;                                                                                                       \
+  } while (0)
+
+static bool decode_cmd(const uint8_t *data, int size, vs_message *m, vs_division division) {
   vs_msg_cmd *c = &m->as.cmd;
-  c->team = (vs_team)kind_of(t.team, VS_TEAMS);
-  for (int i = 0; i < VS_TEAM_SIZE; i++) c->wheels[i] = (vs_wheels){t.left_radps[i], t.right_radps[i]};
-  c->stop = t.stop != 0;
-  c->state_seq = t.state_seq;
-  snprintf(c->source, sizeof c->source, "%s", t.source);
-  vsss_cmd_t_decode_cleanup(&t);
-  return true;
+  if (division == VS_5V5) DECODE_CMD(vsss_cmd_5v5_t, VS_5V5, 5);
+  DECODE_CMD(vsss_cmd_t, VS_3V3, VS_TEAM_SIZE);
 }
 
 static bool decode_referee(const uint8_t *data, int size, vs_message *m) {
@@ -198,6 +222,24 @@ typedef struct shape {
   int texts;
 } shape;
 
+// Worlds and commands of 5 against 5 have types of their own on the channels of 3 against 3's.
+static vs_division division_on_wire(vs_channel channel, int64_t fingerprint) {
+  bool of_five = channel == VS_CH_CMD ? fingerprint == __vsss_cmd_5v5_t_get_hash()
+                                      : (channel == VS_CH_TRUTH || channel == VS_CH_STATE) &&
+                                            fingerprint == __vsss_world_5v5_t_get_hash();
+  return of_five ? VS_5V5 : VS_3V3;
+}
+
+static shape shape_of_five(vs_channel channel) {
+  static char empty[] = "";
+  if (channel == VS_CH_CMD) {
+    vsss_cmd_5v5_t t = {.source = empty};
+    return (shape){__vsss_cmd_5v5_t_get_hash(), (size_t)vsss_cmd_5v5_t_encoded_size(&t) - 5, 1};
+  }
+  vsss_world_5v5_t t = {0};
+  return (shape){__vsss_world_5v5_t_get_hash(), (size_t)vsss_world_5v5_t_encoded_size(&t), 0};
+}
+
 static shape shape_of(vs_channel channel) {
   static char empty[] = "";
   // An empty text takes five bytes: its length and its end.
@@ -260,7 +302,8 @@ static bool tail_ok(vs_channel channel, const shape *s, const uint8_t *data, siz
 vs_status vs_message_decode(vs_channel channel, const uint8_t *data, size_t size, vs_message *out,
                             uint8_t *image_buffer, vs_error *err) {
   if ((unsigned)channel >= VS_CHANNELS) return vs_fail(err, VS_FAIL, "no channel of vsss");
-  shape s = shape_of(channel);
+  vs_division division = size < 8 ? VS_3V3 : division_on_wire(channel, big_endian(data, 8));
+  shape s = division == VS_5V5 ? shape_of_five(channel) : shape_of(channel);
   if (size < 8 || big_endian(data, 8) != s.fingerprint)
     return vs_fail(err, VS_FAIL, "%s: a message of another version of the types in lcm_types",
                    vs_channel_name(channel));
@@ -271,8 +314,8 @@ vs_status vs_message_decode(vs_channel channel, const uint8_t *data, size_t size
   bool ok = false;
   switch (channel) {
   case VS_CH_TRUTH:
-  case VS_CH_STATE: ok = decode_world(data, n, out); break;
-  case VS_CH_CMD: ok = decode_cmd(data, n, out); break;
+  case VS_CH_STATE: ok = decode_world(data, n, out, division); break;
+  case VS_CH_CMD: ok = decode_cmd(data, n, out, division); break;
   case VS_CH_REFEREE: ok = decode_referee(data, n, out); break;
   case VS_CH_POLICY: ok = decode_policy(data, n, out); break;
   case VS_CH_DETECTIONS: ok = decode_detections(data, n, out); break;

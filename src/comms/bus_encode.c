@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "bus_internal.h"
+#include "lcm/vsss_cmd_5v5_t.h"
 #include "lcm/vsss_cmd_t.h"
 #include "lcm/vsss_detections_t.h"
 #include "lcm/vsss_image_t.h"
@@ -9,6 +10,7 @@
 #include "lcm/vsss_radio_t.h"
 #include "lcm/vsss_referee_t.h"
 #include "lcm/vsss_stats_t.h"
+#include "lcm/vsss_world_5v5_t.h"
 #include "lcm/vsss_world_t.h"
 
 _Static_assert(VSSS_REFEREE_T_KICK_OFF == VS_EVENT_KICK_OFF && VSSS_REFEREE_T_GOAL == VS_EVENT_GOAL &&
@@ -20,55 +22,75 @@ _Static_assert(VSSS_REFEREE_T_KICK_OFF == VS_EVENT_KICK_OFF && VSSS_REFEREE_T_GO
 // Every type starts with the same three fields.
 #define STAMP(m) .utime = (m)->utime_us, .utime_capture = (m)->utime_capture_us, .seq = (m)->seq
 
+// The arrays of world_t and world_5v5_t, [team][robot].
+static void put_robots(const vs_world *w, const vs_wire_robots *to) {
+  for (int team = 0; team < VS_TEAMS; team++)
+    for (int i = 0; i < to->team_size; i++) {
+      const vs_robot *r = &w->robot[team][i];
+      int k = team * to->team_size + i;
+      to->x_m[k] = r->pose.x_m;
+      to->y_m[k] = r->pose.y_m;
+      to->theta_rad[k] = r->pose.theta_rad;
+      to->vx_mps[k] = r->vx_mps;
+      to->vy_mps[k] = r->vy_mps;
+      to->omega_radps[k] = r->omega_radps;
+      to->left_radps[k] = r->left_radps;
+      to->right_radps[k] = r->right_radps;
+      to->valid[k] = r->valid;
+    }
+}
+
+// One body for both types, which differ in the sizes of their arrays alone.
+#define ENCODE_WORLD(type, size_of_team)                                                                               \
+  do {                                                                                                                 \
+    type t = {STAMP(m)};                                                                                               \
+    const vs_wire_robots robots = VS_WIRE_ROBOTS(&t, size_of_team);                                                    \
+    t.seq = (int32_t)w->seq;                                                                                           \
+    t.time_us = w->time_us;                                                                                            \
+    put_robots(w, &robots);                                                                                            \
+    t.ball_x_m = w->ball.x_m;                                                                                          \
+    t.ball_y_m = w->ball.y_m;                                                                                          \
+    t.ball_z_m = w->ball.z_m;                                                                                          \
+    t.ball_vx_mps = w->ball.vx_mps;                                                                                    \
+    t.ball_vy_mps = w->ball.vy_mps;                                                                                    \
+    t.ball_vz_mps = w->ball.vz_mps;                                                                                    \
+    t.ball_valid = w->ball.valid;                                                                                      \
+    t.game_time_s = g->time_s;                                                                                         \
+    t.game_duration_s = g->duration_s;                                                                                 \
+    for (int team = 0; team < VS_TEAMS; team++) t.score[team] = g->score[team];                                        \
+    t.event_kind = (int8_t)g->last_event.kind;                                                                         \
+    t.event_team = (int8_t)g->last_event.team;                                                                         \
+    t.event_quadrant = (int8_t)g->last_event.quadrant;                                                                 \
+    t.event_time_s = g->last_event.time_s;                                                                             \
+    t.asks_team = (int8_t)m->as.world.asks_team;                                                                       \
+    return type##_encode(out, 0, size, &t);                                                                            \
+  } while (0)
+
 static int encode_world(const vs_message *m, uint8_t *out, int size) {
   const vs_world *w = &m->as.world.world;
   const vs_game *g = &m->as.world.game;
-  vsss_world_t t = {STAMP(m)};
-  t.seq = (int32_t)w->seq;
-  t.time_us = w->time_us;
-  for (int team = 0; team < VS_TEAMS; team++)
-    for (int i = 0; i < VS_TEAM_SIZE; i++) {
-      const vs_robot *r = &w->robot[team][i];
-      t.robot_x_m[team][i] = r->pose.x_m;
-      t.robot_y_m[team][i] = r->pose.y_m;
-      t.robot_theta_rad[team][i] = r->pose.theta_rad;
-      t.robot_vx_mps[team][i] = r->vx_mps;
-      t.robot_vy_mps[team][i] = r->vy_mps;
-      t.robot_omega_radps[team][i] = r->omega_radps;
-      t.robot_left_radps[team][i] = r->left_radps;
-      t.robot_right_radps[team][i] = r->right_radps;
-      t.robot_valid[team][i] = r->valid;
-    }
-  t.ball_x_m = w->ball.x_m;
-  t.ball_y_m = w->ball.y_m;
-  t.ball_z_m = w->ball.z_m;
-  t.ball_vx_mps = w->ball.vx_mps;
-  t.ball_vy_mps = w->ball.vy_mps;
-  t.ball_vz_mps = w->ball.vz_mps;
-  t.ball_valid = w->ball.valid;
-  t.game_time_s = g->time_s;
-  t.game_duration_s = g->duration_s;
-  for (int team = 0; team < VS_TEAMS; team++) t.score[team] = g->score[team];
-  t.event_kind = (int8_t)g->last_event.kind;
-  t.event_team = (int8_t)g->last_event.team;
-  t.event_quadrant = (int8_t)g->last_event.quadrant;
-  t.event_time_s = g->last_event.time_s;
-  t.asks_team = (int8_t)m->as.world.asks_team;
-  return vsss_world_t_encode(out, 0, size, &t);
+  if (w->division == VS_5V5) ENCODE_WORLD(vsss_world_5v5_t, 5);
+  ENCODE_WORLD(vsss_world_t, VS_TEAM_SIZE);
 }
+
+#define ENCODE_CMD(type, size_of_team)                                                                                 \
+  do {                                                                                                                 \
+    type t = {STAMP(m)};                                                                                               \
+    t.state_seq = (int32_t)c->state_seq;                                                                               \
+    t.team = (int8_t)c->team;                                                                                          \
+    for (int i = 0; i < (size_of_team); i++) {                                                                         \
+      t.left_radps[i] = c->wheels[i].left_radps;                                                                       \
+      t.right_radps[i] = c->wheels[i].right_radps;                                                                     \
+    }                                                                                                                  \
+    t.stop = c->stop;                                                                                                  \
+    t.source = (char *)c->source;                                                                                      \
+    return type##_encode(out, 0, size, &t);                                                                            \
+  } while (0)
 
 static int encode_cmd(const vs_message *m, uint8_t *out, int size) {
   const vs_msg_cmd *c = &m->as.cmd;
-  vsss_cmd_t t = {STAMP(m)};
-  t.state_seq = (int32_t)c->state_seq;
-  t.team = (int8_t)c->team;
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
-    t.left_radps[i] = c->wheels[i].left_radps;
-    t.right_radps[i] = c->wheels[i].right_radps;
-  }
-  t.stop = c->stop;
-  t.source = (char *)c->source;
-  return vsss_cmd_t_encode(out, 0, size, &t);
+  if (c->division == VS_5V5) ENCODE_CMD(vsss_cmd_5v5_t, 5);
+  ENCODE_CMD(vsss_cmd_t, VS_TEAM_SIZE);
 }
 
 static int encode_referee(const vs_message *m, uint8_t *out, int size) {

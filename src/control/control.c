@@ -23,7 +23,7 @@ typedef struct state {
   double since_decision_s; // what the player is told as dt
   bool played;             // it has been called since the reset
   float action[VS_TEAM_SIZE * VS_ACTION_SIZE];
-  vs_wheels wheels[VS_TEAM_SIZE];
+  vs_wheels wheels[VS_TEAM_MOST];
   double latency_s;
   vs_predictor predictor; // of what comes of it; idle without latency
 } state;
@@ -139,11 +139,18 @@ void vs_control_peek(const vs_control *control, vs_team team, const vs_world *ab
   vs_observer_push(out, &view, &game_view, now->action);
 }
 
-// A scripted team at its own rate. It is observed at the policy's rate all the same, so that it can be imitated.
+vs_status vs_control_plays(const vs_control *control, vs_division division, vs_error *err) {
+  if (!control->player) return vs_division_wants_3v3(division, "a team that is commanded from outside", err);
+  return vs_player_plays(control->player, division, err);
+}
+
+// A scripted team at its own rate. In 3 against 3 it is observed at the policy's rate all the same, so that it can be
+// imitated.
 static vs_status step_scripted(vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game,
                                double dt_s, bool *decided, vs_error *err) {
   state *now = &control->now;
-  if (fires(&now->observe, dt_s)) vs_control_observe(control, team, absolute, game);
+  bool threes = absolute->division == VS_3V3;
+  if (threes && fires(&now->observe, dt_s)) vs_control_observe(control, team, absolute, game);
   *decided = fires(&now->decide, dt_s);
   if (!*decided) return VS_OK;
   vs_world view;
@@ -151,13 +158,13 @@ static vs_status step_scripted(vs_control *control, vs_team team, const vs_world
   show(&now->predictor, now->latency_s, team, absolute, game, &view, &game_view);
   double since_s = now->played ? now->since_decision_s : now->decide.period_s;
   vs_status status = vs_player_step(control->player, &view, &game_view, since_s, now->wheels, err);
-  if (status != VS_OK) return status;
-  vs_action_from_wheels(now->wheels, now->action);
-  return VS_OK;
+  if (status == VS_OK && threes) vs_action_from_wheels(now->wheels, now->action);
+  return status;
 }
 
 static vs_status step_learned(vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game,
                               double dt_s, bool *decided, vs_error *err) {
+  if (absolute->division != VS_3V3) return vs_player_plays(control->player, absolute->division, err);
   *decided = fires(&control->now.decide, dt_s);
   if (!*decided) return VS_OK;
   vs_control_observe(control, team, absolute, game);
@@ -168,7 +175,7 @@ static vs_status step_learned(vs_control *control, vs_team team, const vs_world 
 }
 
 vs_status vs_control_step(vs_control *control, vs_team team, const vs_world *absolute, const vs_game *game, double dt_s,
-                          vs_wheels out[VS_TEAM_SIZE], bool *decided, vs_error *err) {
+                          vs_wheels *out, bool *decided, vs_error *err) {
   state *now = &control->now;
   bool due = false;
   vs_status status = VS_OK;
@@ -184,7 +191,7 @@ vs_status vs_control_step(vs_control *control, vs_team team, const vs_world *abs
   }
   if (status != VS_OK) memset(now->wheels, 0, sizeof now->wheels);
   if (now->latency_s > 0) vs_predictor_command(&now->predictor, absolute->time_us, now->wheels);
-  memcpy(out, now->wheels, sizeof now->wheels);
+  memcpy(out, now->wheels, sizeof *out * (size_t)vs_team_size(absolute));
   if (decided) *decided = due;
   return status;
 }
@@ -233,7 +240,7 @@ static bool state_ok(const state *s, const state *mine) {
          metronome_ok(&s->decide, &mine->decide) && metronome_ok(&s->observe, &mine->observe) &&
          vs_all_finite(&s->since_decision_s, 1) && vs_are_bools(&s->played, 1) &&
          vs_all_finite_floats(s->action, VS_TEAM_SIZE * VS_ACTION_SIZE) &&
-         vs_all_finite(&s->wheels[0].left_radps, 2 * VS_TEAM_SIZE) && s->latency_s >= 0 &&
+         vs_all_finite(&s->wheels[0].left_radps, 2 * VS_TEAM_MOST) && s->latency_s >= 0 &&
          s->latency_s <= VS_CONTROL_LATENCY_MAX_S && predictor_ok(&s->predictor);
 }
 

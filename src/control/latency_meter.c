@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "predict.h"
 #include "vsss/field.h"
@@ -46,7 +47,9 @@ vs_status vs_latency_meter_new(vs_team team, vs_latency_meter **out, vs_error *e
 void vs_latency_meter_free(vs_latency_meter *meter) { free(meter); }
 
 void vs_latency_meter_sent(vs_latency_meter *m, int64_t time_us, const vs_wheels wheels[VS_TEAM_SIZE]) {
-  for (int i = 0; i < GUESSES; i++) vs_predictor_command(&m->predictor[i], time_us, wheels);
+  vs_wheels all[VS_TEAM_MOST] = {{0}};
+  memcpy(all, wheels, VS_TEAM_SIZE * sizeof *all);
+  for (int i = 0; i < GUESSES; i++) vs_predictor_command(&m->predictor[i], time_us, all);
 }
 
 static bool is_free(const vs_world *w, vs_team team, int index) {

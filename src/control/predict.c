@@ -14,7 +14,7 @@
 #define MOVED_KG    0.48
 #define TURNED_KGM2 4.33e-4
 
-void vs_predictor_command(vs_predictor *predictor, int64_t time_us, const vs_wheels wheels[VS_TEAM_SIZE]) {
+void vs_predictor_command(vs_predictor *predictor, int64_t time_us, const vs_wheels wheels[VS_TEAM_MOST]) {
   vs_commands *c = &predictor->commands;
   if (c->count > 0 && !memcmp(c->wheels[c->count - 1], wheels, sizeof c->wheels[0])) return;
   if (c->count == VS_COMMANDS_KEPT) {
@@ -36,11 +36,11 @@ static const vs_wheels *acting(const vs_commands *c, double sent_us) {
 static double inside(double value, double half, double size) { return vs_clamp(value, -(half - size), half - size); }
 
 // Keeps a robot inside the walls; where it meets one it stops towards it.
-static void keep_in(vs_robot *robot) {
-  bool in_goal = fabs(robot->pose.y_m) < VS_GOAL_HALF_WIDTH_M;
-  double half_m = VS_FIELD_HALF_LENGTH_M + (in_goal ? VS_GOAL_DEPTH_M : 0.0);
+static void keep_in(const vs_pitch *field, vs_robot *robot) {
+  bool in_goal = fabs(robot->pose.y_m) < field->goal_half_width_m;
+  double half_m = field->half_length_m + (in_goal ? field->goal_depth_m : 0.0);
   double x_m = inside(robot->pose.x_m, half_m, HALF_ROBOT_M);
-  double y_m = inside(robot->pose.y_m, VS_FIELD_HALF_WIDTH_M, HALF_ROBOT_M);
+  double y_m = inside(robot->pose.y_m, field->half_width_m, HALF_ROBOT_M);
   if (x_m != robot->pose.x_m) robot->vx_mps = 0;
   if (y_m != robot->pose.y_m) robot->vy_mps = 0;
   robot->pose.x_m = x_m;
@@ -74,11 +74,11 @@ static void coast(vs_robot *robot, double dt_s) {
   robot->vy_mps = s * vx + c * robot->vy_mps;
 }
 
-static void move(vs_robot *robot, double dt_s) {
+static void move(const vs_pitch *field, vs_robot *robot, double dt_s) {
   robot->pose.x_m += robot->vx_mps * dt_s;
   robot->pose.y_m += robot->vy_mps * dt_s;
   robot->pose.theta_rad = vs_wrap_rad(robot->pose.theta_rad + robot->omega_radps * dt_s);
-  keep_in(robot);
+  keep_in(field, robot);
 }
 
 // Along one axis: the ball leaves a wall it has run into.
@@ -89,15 +89,15 @@ static void rebound(double *place, double *speed, double half) {
   if (*speed * *place > 0) *speed *= -REBOUND;
 }
 
-static void roll(vs_ball *ball, double dt_s) {
+static void roll(const vs_pitch *field, vs_ball *ball, double dt_s) {
   double speed = hypot(ball->vx_mps, ball->vy_mps), slower = speed - VS_BALL_DECELERATION_MPS2 * dt_s;
   double scale = speed > 0 && slower > 0 ? slower / speed : 0;
   ball->vx_mps *= scale;
   ball->vy_mps *= scale;
   ball->x_m += ball->vx_mps * dt_s;
   ball->y_m += ball->vy_mps * dt_s;
-  if (fabs(ball->y_m) > VS_GOAL_HALF_WIDTH_M) rebound(&ball->x_m, &ball->vx_mps, VS_FIELD_HALF_LENGTH_M);
-  rebound(&ball->y_m, &ball->vy_mps, VS_FIELD_HALF_WIDTH_M);
+  if (fabs(ball->y_m) > field->goal_half_width_m) rebound(&ball->x_m, &ball->vx_mps, field->half_length_m);
+  rebound(&ball->y_m, &ball->vy_mps, field->half_width_m);
 }
 
 // A ball inside a robot leaves it through the nearest side and goes at least as fast as this side does.
@@ -122,22 +122,24 @@ static void push(const vs_robot *robot, vs_ball *ball) {
 }
 
 static void step(const vs_wheels *wheels, vs_team team, double dt_s, vs_world *world) {
-  static const vs_wheels stand[VS_TEAM_SIZE] = {{0}};
+  static const vs_wheels stand[VS_TEAM_MOST] = {{0}};
+  const vs_pitch *field = vs_pitch_of(world->division);
+  const int team_size = field->team_size;
   for (int t = 0; t < VS_TEAMS; t++)
-    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    for (int i = 0; i < team_size; i++) {
       vs_robot *robot = &world->robot[t][i];
       if (!robot->valid) continue;
       if (t == (int)team)
         drive(robot, wheels ? &wheels[i] : &stand[i], dt_s);
       else
         coast(robot, dt_s);
-      move(robot, dt_s);
+      move(field, robot, dt_s);
     }
   if (!world->ball.valid) return;
-  roll(&world->ball, dt_s);
-  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++)
-    if (world->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE].valid)
-      push(&world->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE], &world->ball);
+  roll(field, &world->ball, dt_s);
+  for (int t = 0; t < VS_TEAMS; t++)
+    for (int i = 0; i < team_size; i++)
+      if (world->robot[t][i].valid) push(&world->robot[t][i], &world->ball);
 }
 
 // Moves a world on by span_s.
@@ -186,8 +188,8 @@ static void correct_robot(vs_robot *robot, const vs_robot *seen, gains place, ga
 }
 
 static bool near_robot(const vs_world *world) {
-  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
-    const vs_pose *p = &world->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE].pose;
+  for (int i = 0, n = vs_team_size(world); i < VS_TEAMS * n; i++) {
+    const vs_pose *p = &world->robot[i / n][i % n].pose;
     if (vs_distance_m(p->x_m, p->y_m, world->ball.x_m, world->ball.y_m) < NEAR_M) return true;
   }
   return false;
@@ -215,7 +217,7 @@ void vs_predictor_see(vs_predictor *p, vs_team team, double latency_s, const vs_
   go_on(&p->commands, team, latency_s, dt_s, &p->now);
   p->now.time_us = measured->time_us;
   p->now.seq = measured->seq;
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+  for (int i = 0, n = vs_team_size(measured); i < n; i++) {
     correct_robot(&p->now.robot[team][i], &measured->robot[team][i], own_place, own_heading, dt_s);
     correct_robot(&p->now.robot[!team][i], &measured->robot[!team][i], their_place, their_heading, dt_s);
   }

@@ -14,7 +14,7 @@
 typedef struct vs_commands {
   int count;
   int64_t time_us[VS_COMMANDS_KEPT]; // moment of the world that it answered to
-  vs_wheels wheels[VS_COMMANDS_KEPT][VS_TEAM_SIZE];
+  vs_wheels wheels[VS_COMMANDS_KEPT][VS_TEAM_MOST];
 } vs_commands;
 
 // Plain data. All zeros: nothing was seen or commanded yet.
@@ -24,7 +24,7 @@ typedef struct vs_predictor {
   vs_world now; // as estimated at the moment of the newest measurement, absolute frame
 } vs_predictor;
 
-void vs_predictor_command(vs_predictor *predictor, int64_t time_us, const vs_wheels wheels[VS_TEAM_SIZE]);
+void vs_predictor_command(vs_predictor *predictor, int64_t time_us, const vs_wheels wheels[VS_TEAM_MOST]);
 
 // Takes a measured world (absolute frame) in, each once: one that is not newer changes nothing. Commands of `team` reach
 // its robots latency_s after the moment of the world they answered to.

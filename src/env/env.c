@@ -21,7 +21,7 @@ typedef struct match {
   vs_world truth;    // now, after a placement
   vs_world judged;   // as the referee saw it, before a placement
   vs_world measured; // what both teams see now
-  vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE];
+  vs_wheels wheels[VS_TEAMS][VS_TEAM_MOST];
   bool decided[VS_TEAMS];                                   // in the last frame
   double commanded[VS_TEAMS][VS_TEAM_SIZE][VS_ACTION_SIZE]; // summed over the frames of this decision
   int commanded_frames;
@@ -55,7 +55,7 @@ vs_env_def vs_env_def_default(const vs_model *model) {
   return def;
 }
 
-static vs_status open_control(const char *uri, vs_control **out, vs_error *err) {
+static vs_status open_control(const char *uri, vs_division division, vs_control **out, vs_error *err) {
   vs_player *player = NULL;
   if (uri) {
     vs_status s = vs_player_open(uri, &player, err);
@@ -63,6 +63,7 @@ static vs_status open_control(const char *uri, vs_control **out, vs_error *err) 
   }
   vs_status s = vs_control_new(player, out, err);
   if (s != VS_OK) vs_player_close(player);
+  if (s == VS_OK) s = vs_control_plays(*out, division, err);
   return s;
 }
 
@@ -72,7 +73,8 @@ vs_status vs_env_new(const vs_env_def *def, vs_env **out, vs_error *err) {
   env->def = *def;
   vs_status s = vs_referee_init(&env->m.referee, &def->referee, err);
   if (s == VS_OK) s = vs_sim_new(def->model, &env->sim, err);
-  for (int t = 0; t < VS_TEAMS && s == VS_OK; t++) s = open_control(def->player[t], &env->control[t], err);
+  for (int t = 0; t < VS_TEAMS && s == VS_OK; t++)
+    s = open_control(def->player[t], vs_model_division(def->model), &env->control[t], err);
   if (s == VS_OK) s = vs_env_reset(env, 0, err);
   if (s != VS_OK) {
     vs_env_free(env);
@@ -111,9 +113,9 @@ static void measure(vs_env *env) {
   match *m = &env->m;
   vs_sensors_measure(&m->sensors, &m->truth, &m->measured);
   for (int t = 0; t < VS_TEAMS; t++)
-    for (int i = 0; i < VS_TEAM_SIZE; i++)
+    for (int i = 0; i < VS_TEAM_MOST; i++)
       if (vs_referee_off(&m->referee, (vs_team)t, i))
-        m->measured.robot[t][i] = (vs_robot){.pose = vs_world_parked((vs_team)t, i)};
+        m->measured.robot[t][i] = (vs_robot){.pose = vs_world_parked(m->truth.division, (vs_team)t, i)};
   if (m->tick % FRAMES_PER_DECISION != 0 && !m->referee.over) return;
   for (int t = 0; t < VS_TEAMS; t++)
     if (!vs_control_player(env->control[t])) {
@@ -237,7 +239,7 @@ static void send_off(vs_env *env, const vs_event *said) {
   match *m = &env->m;
   if (said->kind != VS_EVENT_SENT_OFF) return;
   for (int t = 0; t < VS_TEAMS; t++)
-    for (int i = 0; i < VS_TEAM_SIZE; i++)
+    for (int i = 0; i < VS_TEAM_MOST; i++)
       if (vs_referee_off(&m->referee, (vs_team)t, i)) vs_sim_put_beside(env->sim, (vs_team)t, i);
   vs_sim_world(env->sim, &m->truth);
 }
@@ -248,12 +250,12 @@ vs_status vs_env_frame(vs_env *env, vs_event *event, vs_error *err) {
   vs_status s = decide(env, err);
   if (s != VS_OK) return s;
 
-  vs_wheels arrived[VS_TEAMS][VS_TEAM_SIZE];
-  vs_sensors_command(&m->sensors, (const vs_wheels(*)[VS_TEAM_SIZE])m->wheels, arrived);
+  vs_wheels arrived[VS_TEAMS][VS_TEAM_MOST];
+  vs_sensors_command(&m->sensors, (const vs_wheels(*)[VS_TEAM_MOST])m->wheels, arrived);
   for (int t = 0; t < VS_TEAMS; t++)
     if (env->def.own_radio[t]) memcpy(arrived[t], m->wheels[t], sizeof arrived[t]);
   vs_referee_hold_off(&m->referee, arrived);
-  s = vs_sim_frame(env->sim, (const vs_wheels(*)[VS_TEAM_SIZE])arrived, err);
+  s = vs_sim_frame(env->sim, (const vs_wheels(*)[VS_TEAM_MOST])arrived, err);
   if (s != VS_OK) return fail_in_match(m, err);
   vs_sim_world(env->sim, &m->truth);
   m->hash = vs_world_hash(m->hash, &m->truth);
@@ -284,6 +286,8 @@ static void reward(const vs_env *env, const vs_world *before, vs_env_result *res
 vs_status vs_env_step(vs_env *env, vs_env_result *result, vs_error *err) {
   match *m = &env->m;
   memset(result, 0, sizeof *result);
+  vs_status plays = vs_division_wants_3v3(m->truth.division, "a step with rewards", err);
+  if (plays != VS_OK) return plays;
   vs_world before = m->truth;
   do {
     vs_status s = vs_env_frame(env, &result->event, err);
@@ -305,6 +309,10 @@ vs_status vs_env_set_action(vs_env *env, vs_team team, const float *action, vs_e
 void vs_env_observation(const vs_env *env, vs_team team, float *out) {
   const match *m = &env->m;
   const vs_control *control = env->control[team];
+  if (m->truth.division != VS_3V3) {
+    memset(out, 0, VS_TEAM_SIZE * VS_OBS_SIZE * sizeof *out);
+    return;
+  }
   if (!vs_control_player(env->control[team])) {
     vs_observer_write(vs_control_observer(control), out);
     return;
@@ -324,9 +332,12 @@ void vs_env_mean_action(const vs_env *env, vs_team team, float *out) {
 }
 
 vs_status vs_env_set_player(vs_env *env, vs_team team, const char *uri, vs_error *err) {
-  vs_control *control;
-  vs_status s = open_control(uri, &control, err);
-  if (s != VS_OK) return s;
+  vs_control *control = NULL;
+  vs_status s = open_control(uri, vs_model_division(env->def.model), &control, err);
+  if (s != VS_OK) {
+    if (control) vs_control_free(control);
+    return s;
+  }
   if (env->next_control[team]) vs_control_free(env->next_control[team]);
   env->next_control[team] = control;
   return VS_OK;
@@ -336,7 +347,7 @@ bool vs_env_over(const vs_env *env) { return env->m.referee.over; }
 void vs_env_truth(const vs_env *env, vs_world *out) { *out = env->m.truth; }
 void vs_env_judged(const vs_env *env, vs_world *out) { *out = env->m.judged; }
 void vs_env_measured(const vs_env *env, vs_world *out) { *out = env->m.measured; }
-void vs_env_wheels(const vs_env *env, vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]) {
+void vs_env_wheels(const vs_env *env, vs_wheels out[VS_TEAMS][VS_TEAM_MOST]) {
   memcpy(out, env->m.wheels, sizeof env->m.wheels);
 }
 bool vs_env_decided(const vs_env *env, vs_team team) { return env->m.decided[team]; }
@@ -369,7 +380,10 @@ void vs_env_save(const vs_env *env, void *state) {
 }
 
 static bool match_ok(const match *m, const vs_env_def *def) {
-  return vs_referee_ok(&m->referee, &def->referee) && vs_sensors_ok(&m->sensors) && vs_world_ok(&m->truth) &&
+  vs_division division = vs_model_division(def->model);
+  bool same = m->truth.division == division && m->judged.division == division && m->measured.division == division &&
+              m->sensors.last.division == division;
+  return same && vs_referee_ok(&m->referee, &def->referee) && vs_sensors_ok(&m->sensors) && vs_world_ok(&m->truth) &&
          vs_world_ok(&m->judged) && vs_world_ok(&m->measured) && vs_world_ok(&m->sensors.last) &&
          vs_all_finite(&m->wheels[0][0].left_radps, sizeof m->wheels / sizeof(double)) &&
          vs_are_bools(m->decided, VS_TEAMS) &&

@@ -36,7 +36,7 @@ void vs_field_tell(vs_field *f, const vs_event *event) {
 
 // Where the robots belong at the last restart.
 static void choose_places(vs_field *f) {
-  vs_place_team(&f->game.last_event, f->def.team, f->place);
+  vs_place_team(VS_3V3, &f->game.last_event, f->def.team, f->place);
   f->go_to = (vs_go_to){.delay_s = f->stats.latency_s};
 }
 

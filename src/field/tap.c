@@ -124,7 +124,8 @@ void vs_tap_command(vs_tap *tap, const vs_world *world, const vs_wheels wheels[V
   if (!tap->bus && !tap->record) return;
   vs_msg_cmd *cmd = &tap->message.as.cmd;
   cmd->team = tap->team;
-  memcpy(cmd->wheels, wheels, sizeof cmd->wheels);
+  cmd->division = VS_3V3;
+  memcpy(cmd->wheels, wheels, VS_TEAM_SIZE * sizeof *cmd->wheels);
   cmd->stop = stop;
   cmd->state_seq = world->seq;
   snprintf(cmd->source, sizeof cmd->source, "%s", tap->policy);

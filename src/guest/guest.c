@@ -111,7 +111,7 @@ void vs_guest_free(vs_guest *g) {
 // Where the referee itself would put us, always legal: told to it, and driven to.
 static void choose_places(vs_guest *g) {
   vs_ref_placement p = {.team = g->def.team};
-  vs_place_team(&g->game.last_event, g->def.team, g->place);
+  vs_place_team(VS_3V3, &g->game.last_event, g->def.team, g->place);
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     p.given[i] = true;
     p.pose[i] = g->place[i];
@@ -171,6 +171,7 @@ static bool see_environment(vs_guest *g, uint32_t *step) {
     g->world.ball.valid = e.world.ball.valid;
     if (e.world.ball.valid) g->world.ball = e.world.ball;
     memcpy(g->game.score, e.goals, sizeof g->game.score);
+    g->world.division = e.world.division;
     *step = e.step;
     seen = true;
   }
@@ -207,6 +208,9 @@ vs_status vs_guest_tick(vs_guest *g, vs_guest_tick_result *out, vs_error *err) {
   bool seen = see(g, &dt_s);
   hear_referee(g);
   if (!seen) return VS_OK;
+  if (g->world.division != VS_3V3)
+    return vs_fail(err, VS_USAGE, "the simulator plays %s, and our team has three robots: start it for 3v3",
+                   vs_pitch_of(g->world.division)->name);
   vs_net_task task = vs_net_task_of(g->referee.state, g->word);
   bool plays = task == VS_NET_AT_PLAY, places = task == VS_NET_TO_PLACES && g->has_places, decided = false;
   if (plays) g->game.time_s = fmin(g->game.time_s + dt_s, g->game.duration_s);

@@ -29,9 +29,12 @@ static vs_status unpack(const ProtobufCMessageDescriptor *type, const uint8_t *d
 
 static void release(ProtobufCMessage *message) { protobuf_c_message_free_unpacked(message, NULL); }
 
-static bool on_field(double x_m, double y_m) {
-  return fabs(x_m) <= VS_FIELD_HALF_LENGTH_M + VS_GOAL_DEPTH_M && fabs(y_m) <= VS_FIELD_HALF_WIDTH_M; // false for NaN
+static bool on_pitch(const vs_pitch *pitch, double x_m, double y_m) {
+  return fabs(x_m) <= pitch->half_length_m + pitch->goal_depth_m && fabs(y_m) <= pitch->half_width_m; // false for NaN
 }
+
+// The packets for a simulator do not say which field they are for: the largest.
+static bool on_field(double x_m, double y_m) { return on_pitch(vs_pitch_of(VS_5V5), x_m, y_m); }
 
 // --- the world --------------------------------------------------------------------------------------------------------
 
@@ -40,10 +43,11 @@ size_t vs_fira_environment_encode(const vs_fira_environment *e, uint8_t *out, si
   FiraMessage__Field field = FIRA_MESSAGE__FIELD__INIT;
   FiraMessage__Frame frame = FIRA_MESSAGE__FRAME__INIT;
   FiraMessage__Environment message = FIRA_MESSAGE__ENVIRONMENT__INIT;
-  FiraMessage__Robot robot[VS_TEAMS][VS_TEAM_SIZE], *list[VS_TEAMS][VS_TEAM_SIZE];
+  FiraMessage__Robot robot[VS_TEAMS][VS_TEAM_MOST], *list[VS_TEAMS][VS_TEAM_MOST];
+  const vs_pitch *pitch = vs_pitch_of(e->world.division);
   size_t count[VS_TEAMS] = {0};
   for (int t = 0; t < VS_TEAMS; t++)
-    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    for (int i = 0; i < pitch->team_size; i++) {
       const vs_robot *from = &e->world.robot[t][i];
       FiraMessage__Robot *to = &robot[t][i];
       if (!from->valid) continue;
@@ -60,14 +64,14 @@ size_t vs_fira_environment_encode(const vs_fira_environment *e, uint8_t *out, si
   const vs_ball *b = &e->world.ball;
   ball.x = b->x_m, ball.y = b->y_m, ball.z = b->z_m;
   ball.vx = b->vx_mps, ball.vy = b->vy_mps, ball.vz = b->vz_mps;
-  field.width = 2 * VS_FIELD_HALF_WIDTH_M;
-  field.length = 2 * VS_FIELD_HALF_LENGTH_M;
-  field.goal_width = 2 * VS_GOAL_HALF_WIDTH_M;
-  field.goal_depth = VS_GOAL_DEPTH_M;
-  field.center_radius = VS_CIRCLE_RADIUS_M;
-  field.penalty_width = 2 * VS_AREA_HALF_WIDTH_M;
-  field.penalty_depth = VS_AREA_DEPTH_M;
-  field.penalty_point = VS_PENALTY_MARK_X_M;
+  field.width = 2 * pitch->half_width_m;
+  field.length = 2 * pitch->half_length_m;
+  field.goal_width = 2 * pitch->goal_half_width_m;
+  field.goal_depth = pitch->goal_depth_m;
+  field.center_radius = pitch->circle_radius_m;
+  field.penalty_width = 2 * pitch->area_half_width_m;
+  field.penalty_depth = pitch->area_depth_m;
+  field.penalty_point = pitch->half_length_m - pitch->penalty_mark_x_m; // before the goal line
   frame.ball = b->valid ? &ball : NULL;
   frame.robots_yellow = list[VS_YELLOW];
   frame.n_robots_yellow = count[VS_YELLOW];
@@ -81,17 +85,23 @@ size_t vs_fira_environment_encode(const vs_fira_environment *e, uint8_t *out, si
   return pack(&message, out, out_size);
 }
 
-static void read_robots(FiraMessage__Robot *const *from, size_t n, vs_robot to[VS_TEAM_SIZE]) {
+static void read_robots(const vs_pitch *pitch, FiraMessage__Robot *const *from, size_t n, vs_robot *to) {
   for (size_t k = 0; k < n; k++) {
     const FiraMessage__Robot *r = from[k];
     bool finite = isfinite(r->orientation) && isfinite(r->vx) && isfinite(r->vy) && isfinite(r->vorientation);
-    if (r->robot_id >= VS_TEAM_SIZE || !on_field(r->x, r->y) || !finite) continue;
+    if (r->robot_id >= (uint32_t)pitch->team_size || !on_pitch(pitch, r->x, r->y) || !finite) continue;
     to[r->robot_id] = (vs_robot){.pose = {r->x, r->y, vs_wrap_rad(r->orientation)},
                                  .vx_mps = r->vx,
                                  .vy_mps = r->vy,
                                  .omega_radps = r->vorientation,
                                  .valid = true};
   }
+}
+
+// Half-way between the two lengths.
+static vs_division division_of(const FiraMessage__Field *f) {
+  double between_m = vs_pitch_of(VS_3V3)->half_length_m + vs_pitch_of(VS_5V5)->half_length_m;
+  return f && f->length > between_m ? VS_5V5 : VS_3V3;
 }
 
 vs_status vs_fira_environment_decode(const uint8_t *data, size_t size, vs_fira_environment *out, vs_error *err) {
@@ -107,10 +117,12 @@ vs_status vs_fira_environment_decode(const uint8_t *data, size_t size, vs_fira_e
     release(base);
     return vs_fail(err, VS_FAIL, "an Environment without a frame");
   }
-  read_robots(m->frame->robots_blue, m->frame->n_robots_blue, out->world.robot[VS_BLUE]);
-  read_robots(m->frame->robots_yellow, m->frame->n_robots_yellow, out->world.robot[VS_YELLOW]);
+  out->world.division = division_of(m->field);
+  const vs_pitch *pitch = vs_pitch_of(out->world.division);
+  read_robots(pitch, m->frame->robots_blue, m->frame->n_robots_blue, out->world.robot[VS_BLUE]);
+  read_robots(pitch, m->frame->robots_yellow, m->frame->n_robots_yellow, out->world.robot[VS_YELLOW]);
   const FiraMessage__Ball *b = m->frame->ball;
-  if (b && on_field(b->x, b->y) && isfinite(b->z) && isfinite(b->vx) && isfinite(b->vy) && isfinite(b->vz))
+  if (b && on_pitch(pitch, b->x, b->y) && isfinite(b->z) && isfinite(b->vx) && isfinite(b->vy) && isfinite(b->vz))
     out->world.ball = (vs_ball){b->x, b->y, b->z, b->vx, b->vy, b->vz, true};
   release(base);
   return VS_OK;
@@ -161,7 +173,7 @@ size_t vs_fira_packet_encode(const vs_fira_packet *p, bool degrees, uint8_t *out
 static void read_commands(const FiraMessage__Commands *from, vs_fira_packet *out) {
   for (size_t k = 0; from && k < from->n_robot_commands; k++) {
     const FiraMessage__Command *c = from->robot_commands[k];
-    if (c->id >= VS_TEAM_SIZE || !isfinite(c->wheel_left) || !isfinite(c->wheel_right) ||
+    if (c->id >= VS_TEAM_MOST || !isfinite(c->wheel_left) || !isfinite(c->wheel_right) ||
         out->commands == VS_FIRA_ROWS) {
       out->dropped++;
       continue;
@@ -183,7 +195,7 @@ static void read_replacements(const FiraMessage__Replacement *from, bool degrees
         (vs_ball){.x_m = b->x, .y_m = b->y, .z_m = VS_BALL_RADIUS_M, .vx_mps = b->vx, .vy_mps = b->vy, .valid = true};
   for (size_t k = 0; k < from->n_robots; k++) {
     const FiraMessage__Robot *p = from->robots[k]->position;
-    if (!p || p->robot_id >= VS_TEAM_SIZE || !on_field(p->x, p->y) || !isfinite(p->orientation) ||
+    if (!p || p->robot_id >= VS_TEAM_MOST || !on_field(p->x, p->y) || !isfinite(p->orientation) ||
         out->robots == VS_FIRA_ROWS) {
       out->dropped++;
       continue;
@@ -206,6 +218,21 @@ vs_status vs_fira_packet_decode(const uint8_t *data, size_t size, bool degrees, 
   read_replacements(m->replace, degrees, out);
   release(base);
   return VS_OK;
+}
+
+void vs_fira_packet_fit(vs_fira_packet *p, vs_division division) {
+  const vs_pitch *pitch = vs_pitch_of(division);
+  int commands = 0, robots = 0;
+  for (int k = 0; k < p->commands; k++)
+    if (p->command[k].robot < pitch->team_size) p->command[commands++] = p->command[k];
+  for (int k = 0; k < p->robots; k++)
+    if (p->place[k].robot < pitch->team_size && on_pitch(pitch, p->place[k].pose.x_m, p->place[k].pose.y_m))
+      p->place[robots++] = p->place[k];
+  bool ball = p->places_ball && on_pitch(pitch, p->ball.x_m, p->ball.y_m);
+  p->dropped += p->commands - commands + p->robots - robots + (p->places_ball ? !ball : 0);
+  p->commands = commands;
+  p->robots = robots;
+  p->places_ball = ball;
 }
 
 // --- the referee ------------------------------------------------------------------------------------------------------
@@ -237,10 +264,10 @@ vs_status vs_ref_command_decode(const uint8_t *data, size_t size, vs_ref_command
 }
 
 size_t vs_ref_placement_encode(const vs_ref_placement *p, uint8_t *out, size_t out_size) {
-  VSSRef__Robot robot[VS_TEAM_SIZE], *list[VS_TEAM_SIZE];
+  VSSRef__Robot robot[VS_TEAM_MOST], *list[VS_TEAM_MOST];
   VSSRef__Frame frame = VSSREF__FRAME__INIT;
   VSSRef__Placement message = VSSREF__PLACEMENT__INIT;
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+  for (int i = 0; i < VS_TEAM_MOST; i++) {
     if (!p->given[i]) continue;
     vssref__robot__init(&robot[i]);
     robot[i].robot_id = (uint32_t)i;
@@ -262,9 +289,9 @@ static vs_status read_placement(const VSSRef__Frame *from, vs_ref_placement *out
   out->team = (vs_team)team;
   for (size_t k = 0; k < from->n_robots; k++) {
     const VSSRef__Robot *r = from->robots[k];
-    if (r->robot_id >= VS_TEAM_SIZE)
+    if (r->robot_id >= VS_TEAM_MOST)
       return vs_fail(err, VS_FAIL, "%s places robot %u: there are 0 to %d", vs_team_name(out->team), r->robot_id,
-                     VS_TEAM_SIZE - 1);
+                     VS_TEAM_MOST - 1);
     if (!on_field(r->x, r->y) || !isfinite(r->orientation))
       return vs_fail(err, VS_FAIL, "%s places robot %u at %g, %g m, %g degrees", vs_team_name(out->team), r->robot_id,
                      r->x, r->y, r->orientation);

@@ -22,6 +22,7 @@ vs_status vs_fira_packet_decode(const uint8_t *data, size_t size, bool degrees, 
   (void)data, (void)size, (void)degrees, (void)out;
   return vs_league_supported(err);
 }
+void vs_fira_packet_fit(vs_fira_packet *packet, vs_division division) { (void)packet, (void)division; }
 size_t vs_ref_command_encode(const vs_ref_command *command, uint8_t *out, size_t out_size) {
   (void)command, (void)out, (void)out_size;
   return 0;

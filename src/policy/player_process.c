@@ -41,7 +41,7 @@ typedef struct reply {
   vs_status status;
   vs_error error;
   vs_player_about about; // of HELLO
-  vs_wheels wheels[VS_TEAM_SIZE];
+  vs_wheels wheels[VS_TEAM_MOST];
   float action[VS_TEAM_SIZE * VS_ACTION_SIZE];
 } reply;
 
@@ -80,7 +80,8 @@ static void work(const char *uri, int talk) {
   a.verb = HELLO;
   a.status = vs_player_open(uri, &player, &a.error);
   if (a.status == VS_OK) {
-    a.about = (vs_player_about){.sees = vs_player_kind(player), .rate_hz = vs_player_rate_hz(player)};
+    a.about = (vs_player_about){
+        .sees = vs_player_kind(player), .rate_hz = vs_player_rate_hz(player), .divisions = vs_player_divisions(player)};
     snprintf(a.about.name, sizeof a.about.name, "%s", vs_player_name(player));
   }
   while (send(talk, &a, sizeof a, MSG_NOSIGNAL) == (ssize_t)sizeof a && a.status == VS_OK) {
@@ -262,7 +263,7 @@ static vs_status reset(void *handle, uint64_t seed, vs_error *err) {
   return call(p, RESET, err);
 }
 
-static vs_status step(void *handle, const vs_world *view, const vs_game *game, double dt_s, vs_wheels out[VS_TEAM_SIZE],
+static vs_status step(void *handle, const vs_world *view, const vs_game *game, double dt_s, vs_wheels *out,
                       vs_error *err) {
   vs_player_process *p = handle;
   vs_status s = revive(p, err);
@@ -271,7 +272,7 @@ static vs_status step(void *handle, const vs_world *view, const vs_game *game, d
   p->request.game = *game;
   p->request.dt_s = dt_s;
   s = call(p, STEP, err);
-  if (s == VS_OK) memcpy(out, p->reply.wheels, sizeof p->reply.wheels);
+  if (s == VS_OK) memcpy(out, p->reply.wheels, sizeof *out * (size_t)vs_team_size(view));
   return s;
 }
 

@@ -33,7 +33,7 @@ static vs_status reset(void *handle, uint64_t seed, vs_error *err) {
   return s == VS_OK ? vs_player_reset(r->player, seed, err) : s;
 }
 
-static vs_status step(void *handle, const vs_world *view, const vs_game *game, double dt_s, vs_wheels out[VS_TEAM_SIZE],
+static vs_status step(void *handle, const vs_world *view, const vs_game *game, double dt_s, vs_wheels *out,
                       vs_error *err) {
   rerun *r = handle;
   vs_status s = alive(r, err);
@@ -63,7 +63,9 @@ vs_status vs_player_open_rerun(const char *uri, vs_player **out, vs_error *err) 
   vs_status s = vs_player_open(uri, &r->player, err);
   vs_player_about about = {0};
   if (s == VS_OK) {
-    about = (vs_player_about){.sees = vs_player_kind(r->player), .rate_hz = vs_player_rate_hz(r->player)};
+    about = (vs_player_about){.sees = vs_player_kind(r->player),
+                              .rate_hz = vs_player_rate_hz(r->player),
+                              .divisions = vs_player_divisions(r->player)};
     snprintf(about.name, sizeof about.name, "%s", vs_player_name(r->player));
     s = vs_player_of_remote(uri, &calls, r, &about, out, err);
   }

@@ -12,9 +12,11 @@ static vs_status random_init(void *state, uint64_t seed, const char *options, vs
   return vs_player_options("random:", options, no_options, err);
 }
 
+#define ALL_DIVISIONS (VSSS_PLAYS(VS_3V3) | VSSS_PLAYS(VS_5V5))
+
 static void random_step(void *state, const vs_world *world, const vs_game *game, double dt_s, vs_wheels *out) {
-  (void)world, (void)game, (void)dt_s;
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+  (void)game, (void)dt_s;
+  for (int i = 0, n = vs_team_size(world); i < n; i++) {
     out[i].left_radps = vs_rng_range(state, -VS_WHEEL_LIMIT_RADPS, VS_WHEEL_LIMIT_RADPS);
     out[i].right_radps = vs_rng_range(state, -VS_WHEEL_LIMIT_RADPS, VS_WHEEL_LIMIT_RADPS);
   }
@@ -28,6 +30,7 @@ const vsss_player_api vs_player_random = {
     .state_size = sizeof(vs_rng),
     .init = random_init,
     .step = random_step,
+    .divisions = ALL_DIVISIONS,
 };
 
 static vs_status zero_init(void *state, uint64_t seed, const char *options, vs_error *err) {
@@ -36,8 +39,8 @@ static vs_status zero_init(void *state, uint64_t seed, const char *options, vs_e
 }
 
 static void zero_step(void *state, const vs_world *world, const vs_game *game, double dt_s, vs_wheels *out) {
-  (void)state, (void)world, (void)game, (void)dt_s;
-  memset(out, 0, VS_TEAM_SIZE * sizeof *out);
+  (void)state, (void)game, (void)dt_s;
+  memset(out, 0, (size_t)vs_team_size(world) * sizeof *out);
 }
 
 const vsss_player_api vs_player_zero = {
@@ -47,6 +50,7 @@ const vsss_player_api vs_player_zero = {
     .state_size = 1,
     .init = zero_init,
     .step = zero_step,
+    .divisions = ALL_DIVISIONS,
 };
 
 // Each robot swings: forth and back, left and right, one wheel and the other, each movement and then its reverse, so that it

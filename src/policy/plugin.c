@@ -1,6 +1,7 @@
 // plugin:FILE.so. The file is checked before it is trusted, and each call into it is guarded.
 #include <dlfcn.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,9 +21,19 @@ struct vs_plugin {
   char file[512];
   char name[128]; // the api's own name, copied: readable after a crash
   void *handle;
+  vsss_player_api own; // what it exports, copied
   const vsss_player_api *api;
   bool crashed;
 };
+
+// Of interface 1: three robots a team, and no divisions after `free`.
+typedef struct world_v1 {
+  int64_t time_us;
+  uint32_t seq;
+  vs_robot robot[VS_TEAMS][VS_TEAM_SIZE];
+  vs_ball ball;
+} world_v1;
+#define SIZE_V1 offsetof(vsss_player_api, divisions)
 
 static const char *signal_text(int number) {
   switch (number) {
@@ -64,7 +75,7 @@ static void run_entry(void *argument) {
 static vs_status check_api(vs_plugin *plugin, const vsss_player_api *api, vs_error *err) {
   const char *file = plugin->file;
   if (!api) return vs_fail(err, VS_FAIL, "plugin:%s: " ENTRY "() returned NULL", file);
-  if (api->version != VSSS_PLAYER_VERSION)
+  if (api->version != VSSS_PLAYER_VERSION && api->version != 1)
     return vs_fail(err, VS_FAIL,
                    "plugin:%s: built for player interface %u, this program speaks %u: rebuild it with this program's "
                    "vsss/player.h",
@@ -101,7 +112,8 @@ static vs_status load(vs_plugin *plugin, vs_error *err) {
   if (status != VS_OK) return status;
   status = check_api(plugin, call.api, err);
   if (status != VS_OK) return status;
-  plugin->api = call.api;
+  memcpy(&plugin->own, call.api, call.api->version == 1 ? SIZE_V1 : sizeof plugin->own);
+  plugin->api = &plugin->own;
   snprintf(plugin->name, sizeof plugin->name, "%s", call.api->name);
   return VS_OK;
 }
@@ -152,12 +164,20 @@ vs_status vs_plugin_init(vs_plugin *plugin, void *state, uint64_t seed, const ch
 
 static void run_step(void *argument) {
   state_call *c = argument;
-  c->api->step(c->state, c->world, c->game, c->dt_s, c->out);
+  if (c->api->version > 1) {
+    c->api->step(c->state, c->world, c->game, c->dt_s, c->out);
+    return;
+  }
+  world_v1 world = {.time_us = c->world->time_us, .seq = c->world->seq, .ball = c->world->ball};
+  for (int t = 0; t < VS_TEAMS; t++) memcpy(world.robot[t], c->world->robot[t], sizeof world.robot[t]);
+  // Its step takes a pointer to what it was built with; all else of the call is the same.
+  c->api->step(c->state, (const vs_world *)(const void *)&world, c->game, c->dt_s, c->out);
 }
 
 vs_status vs_plugin_step(vs_plugin *plugin, void *state, const vs_world *world, const vs_game *game, double dt_s,
                          vs_wheels *out, vs_error *err) {
-  for (int i = 0; i < VS_TEAM_SIZE; i++) out[i] = (vs_wheels){0.0, 0.0}; // a wheel it does not set stands still
+  for (int i = 0, n = vs_team_size(world); i < n; i++)
+    out[i] = (vs_wheels){0.0, 0.0}; // a wheel it does not set stands still
   state_call call = {.api = plugin->api, .state = state, .world = world, .game = game, .dt_s = dt_s, .out = out};
   return guarded(plugin, "step", run_step, &call, err);
 }

@@ -24,6 +24,7 @@ struct vs_player {
   void *handle;
   vs_player_about about; // what it said of itself
   void *state;           // api->state_size bytes
+  bool fives;            // a strategy of three robots that fives.c helps with the rest
   bool started;
 };
 
@@ -32,11 +33,13 @@ typedef struct scheme {
   vs_status (*open)(vs_player *player, const struct scheme *scheme, vs_error *err);
   const vsss_player_api *builtin;
   vs_player_provider provider;
+  bool fives;
 } scheme;
 
 static vs_status open_builtin(vs_player *player, const scheme *s, vs_error *err) {
   if (*player->rest) return vs_fail(err, VS_USAGE, "%s: nothing but ?options may follow '%s'", player->uri, s->name);
   player->api = s->builtin;
+  player->fives = s->fives;
   return VS_OK;
 }
 
@@ -63,14 +66,15 @@ static vs_status open_provided(vs_player *player, const scheme *s, vs_error *err
 
 // The program's table. Rows after the built-in ones are registered once at start, before any thread.
 static scheme table[8 + MAX_PROVIDERS + 1] = {
-    {"onnx:", "FILE, a trained policy; without a file the one that comes with vsss", open_onnx, NULL, NULL},
-    {"emc:", "VSSS-EMC of 2019; ?pid=1: through its own wheel PID", open_builtin, &vs_player_emc, NULL},
-    {"inf:", "PY-VSSS-INF", open_builtin, &vs_player_inf, NULL},
-    {"emc22:", "VSSS-EMC of 2022", open_builtin, &vs_player_emc22, NULL},
-    {"random:", "uniform wheel speeds", open_builtin, &vs_player_random, NULL},
-    {"zero:", "stands still", open_builtin, &vs_player_zero, NULL},
-    {"shake:", "swings each robot a little, to measure it (identify, latency)", open_builtin, &vs_player_shake, NULL},
-    {"plugin:", "FILE.so, a team's own strategy (include/vsss/player.h)", open_plugin, NULL, NULL},
+    {"onnx:", "FILE, a trained policy; without a file the one that comes with vsss", open_onnx, NULL, NULL, false},
+    {"emc:", "VSSS-EMC of 2019; ?pid=1: through its own wheel PID", open_builtin, &vs_player_emc, NULL, true},
+    {"inf:", "PY-VSSS-INF", open_builtin, &vs_player_inf, NULL, true},
+    {"emc22:", "VSSS-EMC of 2022", open_builtin, &vs_player_emc22, NULL, true},
+    {"random:", "uniform wheel speeds", open_builtin, &vs_player_random, NULL, false},
+    {"zero:", "stands still", open_builtin, &vs_player_zero, NULL, false},
+    {"shake:", "swings each robot a little, to measure it (identify, latency)", open_builtin, &vs_player_shake, NULL,
+     false},
+    {"plugin:", "FILE.so, a team's own strategy (include/vsss/player.h)", open_plugin, NULL, NULL, false},
 };
 
 static scheme *table_end(void) {
@@ -84,7 +88,7 @@ void vs_player_register(const char *name, const char *help, vs_player_provider o
     if (!strcmp(s->name, name)) return;
   scheme *end = table_end();
   if (end - table >= (long)(sizeof table / sizeof *table) - 1) return;
-  *end = (scheme){name, help, open_provided, NULL, open};
+  *end = (scheme){name, help, open_provided, NULL, open, false};
 }
 
 bool vs_player_scheme(int index, const char **name, const char **help) {
@@ -214,6 +218,28 @@ double vs_player_rate_hz(const vs_player *player) {
   return player->api ? player->api->rate_hz : VS_DECISION_HZ;
 }
 
+uint32_t vs_player_divisions(const vs_player *player) {
+  if (player->remote) return player->about.divisions;
+  if (!player->api) return VSSS_PLAYS(VS_3V3);
+  if (player->fives) return VSSS_PLAYS(VS_3V3) | VSSS_PLAYS(VS_5V5);
+  return player->api->divisions ? player->api->divisions : VSSS_PLAYS(VS_3V3);
+}
+
+vs_status vs_player_plays(const vs_player *player, vs_division division, vs_error *err) {
+  if (vs_player_divisions(player) & VSSS_PLAYS(division)) return VS_OK;
+  const char *name = vs_pitch_of(division)->name;
+  if (vs_player_kind(player) == VS_SEES_OBSERVATION)
+    return vs_fail(
+        err, VS_USAGE,
+        "player %s is a learned policy, which sees and commands three robots, not %s: use --division 3v3, or a "
+        "scripted player (emc:, inf:, emc22:, random:)",
+        player->uri, name);
+  return vs_fail(err, VS_USAGE,
+                 "player %s does not play %s: use --division 3v3, or another player (a plugin says what it plays in "
+                 "vsss_player_api.divisions)",
+                 player->uri, name);
+}
+
 const char *vs_player_uri(const vs_player *player) { return player->uri; }
 
 const char *vs_player_name(const vs_player *player) {
@@ -239,20 +265,29 @@ static vs_status check_speed(const vs_player *player, int robot, const char *whe
   return VS_OK;
 }
 
-vs_status vs_player_step(vs_player *player, const vs_world *view, const vs_game *game, double dt_s,
-                         vs_wheels out[VS_TEAM_SIZE], vs_error *err) {
+vs_status vs_player_step(vs_player *player, const vs_world *view, const vs_game *game, double dt_s, vs_wheels *out,
+                         vs_error *err) {
   if (vs_player_kind(player) != VS_SEES_WORLD)
     return vs_fail(err, VS_FAIL, "player %s acts on observations, not on a world", player->uri);
+  if (view->division != VS_3V3) {
+    vs_status status = vs_player_plays(player, view->division, err);
+    if (status != VS_OK) return status;
+  }
   if (player->remote) return player->remote->step(player->handle, view, game, dt_s, out, err);
   if (player->plugin) {
     vs_status status = vs_plugin_step(player->plugin, player->state, view, game, dt_s, out, err);
     if (status != VS_OK) return status;
+  } else if (player->fives && view->division != VS_3V3) {
+    vs_world three;
+    vs_fives_show(view, &three);
+    player->api->step(player->state, &three, game, dt_s, out);
+    vs_fives_drive(view, out);
   } else {
     player->api->step(player->state, view, game, dt_s, out);
   }
   const char *why = player->failure ? player->failure(player->state) : NULL;
   if (why) return vs_fail(err, VS_FAIL, "%s: %s", player->uri, why);
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+  for (int i = 0, n = vs_team_size(view); i < n; i++) {
     vs_status status = check_speed(player, i, "left", &out[i].left_radps, err);
     if (status == VS_OK) status = check_speed(player, i, "right", &out[i].right_radps, err);
     if (status != VS_OK) return status;

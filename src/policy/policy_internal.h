@@ -23,12 +23,13 @@ vs_status vs_policy_onnx_open(const char *rest, vs_obs_player **out, vs_error *e
 // A player elsewhere, of which this process holds only a handle (player_process.c). Calls as in policy.h.
 typedef struct vs_player_about {
   vs_player_sees sees;
+  uint32_t divisions; // VSSS_PLAYS of each that it plays
   double rate_hz;
   char name[128];
 } vs_player_about;
 typedef struct vs_player_remote {
   vs_status (*reset)(void *handle, uint64_t seed, vs_error *err);
-  vs_status (*step)(void *handle, const vs_world *view, const vs_game *game, double dt_s, vs_wheels out[VS_TEAM_SIZE],
+  vs_status (*step)(void *handle, const vs_world *view, const vs_game *game, double dt_s, vs_wheels *out,
                     vs_error *err);
   vs_status (*act)(void *handle, const float *obs, float *action, vs_error *err); // VS_TEAM_SIZE rows
   int64_t (*failures)(const void *handle);
@@ -38,6 +39,7 @@ typedef struct vs_player_remote {
 vs_status vs_player_of_remote(const char *uri, const vs_player_remote *calls, void *handle,
                               const vs_player_about *about, vs_player **out, vs_error *err);
 
+uint32_t vs_player_divisions(const vs_player *player);                    // VSSS_PLAYS of each
 void *vs_player_handle(vs_player *player, const vs_player_remote *calls); // NULL: not one of these calls
 
 // Built-in players.
@@ -58,6 +60,12 @@ vs_status vs_plugin_step(vs_plugin *plugin, void *state, const vs_world *world, 
                          vs_wheels *out, vs_error *err);
 vs_status vs_plugin_free_state(vs_plugin *plugin, void *state, vs_error *err);
 void vs_plugin_close(vs_plugin *plugin);
+
+// fives.c: how a strategy of three robots plays 5 against 5.
+// What it is shown: robots 0 to 2 of each team on a field of 3 against 3. In the view of the team.
+void vs_fives_show(const vs_world *view, vs_world *three);
+// What the others do: robots 3 and 4. wheels: [5], the first three are left.
+void vs_fives_drive(const vs_world *view, vs_wheels *wheels);
 
 // state_check.c: whether a built-in player can go on from a snapshot that came from a file.
 bool vs_player_state_ok(const vsss_player_api *api, const void *state);

@@ -1,25 +1,18 @@
 #include "vsss/idle.h"
 
-#include <math.h>
-
 #include "referee_internal.h"
-#include "vsss/field.h"
 #include "vsss/geom.h"
-
-static bool in_area(int team, double x_m, double y_m) {
-  double side = team == VS_BLUE ? -1 : 1;
-  return side * x_m > VS_FIELD_HALF_LENGTH_M - VS_AREA_DEPTH_M && fabs(y_m) < VS_AREA_HALF_WIDTH_M;
-}
 
 // The robot in its own area that is nearest to its goal, while the ball is elsewhere; -1: none is excused.
 static int excused(const vs_world *w, int team) {
-  if (in_area(team, w->ball.x_m, w->ball.y_m)) return -1;
-  double goal_x_m = team == VS_BLUE ? -VS_FIELD_HALF_LENGTH_M : VS_FIELD_HALF_LENGTH_M, nearest_m = INFINITY;
-  int keeper = -1;
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+  const vs_pitch *field = vs_pitch_of(w->division);
+  int side = team == VS_BLUE ? -1 : 1, keeper = -1;
+  if (vs_in_area(field, side, w->ball.x_m, w->ball.y_m)) return -1;
+  double goal_x_m = side * field->half_length_m, nearest_m = INFINITY;
+  for (int i = 0; i < field->team_size; i++) {
     const vs_pose *p = &w->robot[team][i].pose;
     double d = vs_distance_m(p->x_m, p->y_m, goal_x_m, 0);
-    if (in_area(team, p->x_m, p->y_m) && d < nearest_m) nearest_m = d, keeper = i;
+    if (vs_in_area(field, side, p->x_m, p->y_m) && d < nearest_m) nearest_m = d, keeper = i;
   }
   return keeper;
 }
@@ -30,7 +23,7 @@ void vs_idle_step(vs_idle *idle, const vs_world *w, const vs_event *event, doubl
            event->kind == VS_EVENT_HALF_TIME || event->kind == VS_EVENT_EXTRA_TIME || event->kind == VS_EVENT_SHOOT_OUT;
   for (int t = 0; t < VS_TEAMS; t++) {
     int keeper = excused(w, t);
-    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    for (int i = 0, n = vs_team_size(w); i < n; i++) {
       const vs_pose *p = &w->robot[t][i].pose;
       double x_m = idle->robot[t][i].x_m, y_m = idle->robot[t][i].y_m;
       bool moved = vs_distance_m(p->x_m, p->y_m, x_m, y_m) > VS_IDLE_RADIUS_M;

@@ -95,8 +95,8 @@ static bool game_ok(const vs_game *g) {
 
 static bool idle_ok(const vs_idle *idle) {
   bool ok = true;
-  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
-    int t = i / VS_TEAM_SIZE, k = i % VS_TEAM_SIZE;
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_MOST; i++) {
+    int t = i / VS_TEAM_MOST, k = i % VS_TEAM_MOST;
     ok = ok && vs_all_finite(&idle->robot[t][k].x_m, 3) && vs_are_bools(&idle->robot[t][k].warned, 2);
   }
   for (int t = 0; t < VS_TEAMS; t++) ok = ok && idle->warnings[t] >= 0 && idle->sent_off[t] >= 0;
@@ -129,22 +129,18 @@ void vs_referee_restarted(vs_referee *referee, const vs_world *world) {
   referee->still_y_m = world->ball.y_m;
 }
 
-// In the area of the team that defends -x (side -1) or +x (side 1), the goal behind it included.
-static bool in_area(int side, double x_m, double y_m) {
-  return side * x_m > VS_FIELD_HALF_LENGTH_M - VS_AREA_DEPTH_M && fabs(y_m) < VS_AREA_HALF_WIDTH_M;
-}
-
 static int count_in_area(const vs_world *world, int team, int side) {
+  const vs_pitch *field = vs_pitch_of(world->division);
   int n = 0;
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+  for (int i = 0; i < field->team_size; i++) {
     const vs_pose *p = &world->robot[team][i].pose;
-    n += in_area(side, p->x_m, p->y_m) ? 1 : 0;
+    n += vs_in_area(field, side, p->x_m, p->y_m) ? 1 : 0;
   }
   return n;
 }
 
 static bool near_ball(const vs_world *world, int team) {
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+  for (int i = 0, n = vs_team_size(world); i < n; i++) {
     const vs_pose *p = &world->robot[team][i].pose;
     if (vs_distance_m(p->x_m, p->y_m, world->ball.x_m, world->ball.y_m) <= VS_LEAGUE_NEAR_BALL_M) return true;
   }
@@ -153,17 +149,18 @@ static bool near_ball(const vs_world *world, int team) {
 
 static void facts_of(const vs_world *world, double dt_s, vs_facts *f) {
   const vs_ball *ball = &world->ball;
-  const double line_m = VS_FIELD_HALF_LENGTH_M + VS_BALL_RADIUS_M;
-  bool over_line = fabs(ball->x_m) > line_m, in_mouth = fabs(ball->y_m) < VS_GOAL_HALF_WIDTH_M;
+  const vs_pitch *field = vs_pitch_of(world->division);
+  const double line_m = field->half_length_m + VS_BALL_RADIUS_M;
+  bool over_line = fabs(ball->x_m) > line_m, in_mouth = fabs(ball->y_m) < field->goal_half_width_m;
   *f = (vs_facts){.dt_s = dt_s, .scorer = -1, .area = -1, .ended_play = -1, .pusher = -1, .holder = -1};
   if (over_line && in_mouth) f->scorer = ball->x_m > 0 ? VS_BLUE : VS_YELLOW;
-  f->ball_out = (over_line && !in_mouth) || fabs(ball->y_m) > VS_FIELD_HALF_WIDTH_M + VS_BALL_RADIUS_M;
+  f->ball_out = (over_line && !in_mouth) || fabs(ball->y_m) > field->half_width_m + VS_BALL_RADIUS_M;
   f->quadrant = ball->x_m >= 0 ? (ball->y_m >= 0 ? 1 : 4) : (ball->y_m >= 0 ? 2 : 3);
   f->ball_mps = sqrt(ball->vx_mps * ball->vx_mps + ball->vy_mps * ball->vy_mps);
   for (int t = 0; t < VS_TEAMS; t++) {
     int side = t == VS_BLUE ? -1 : 1;
     f->near_ball[t] = near_ball(world, t);
-    if (f->scorer >= 0 || !in_area(side, ball->x_m, ball->y_m)) continue;
+    if (f->scorer >= 0 || !vs_in_area(field, side, ball->x_m, ball->y_m)) continue;
     f->area = t;
     f->defenders = count_in_area(world, t, side);
     f->attackers = count_in_area(world, vs_other_team(t), side);
@@ -209,7 +206,7 @@ static void send_off(vs_referee *r, const vs_world *world, vs_event *event, doub
 }
 
 static bool has_left(const vs_world *placed, const vs_world *now, int team) {
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+  for (int i = 0, n = vs_team_size(now); i < n; i++) {
     const vs_pose *a = &placed->robot[team][i].pose, *b = &now->robot[team][i].pose;
     if (vs_distance_m(a->x_m, a->y_m, b->x_m, b->y_m) > VS_FALSE_START_M) return true;
   }
@@ -230,9 +227,9 @@ vs_start vs_referee_start(vs_referee *r, const vs_world *placed, const vs_world 
 
 bool vs_referee_off(const vs_referee *r, vs_team team, int robot) { return r->idle.robot[team][robot].off; }
 
-void vs_referee_hold_off(const vs_referee *r, vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE]) {
+void vs_referee_hold_off(const vs_referee *r, vs_wheels wheels[VS_TEAMS][VS_TEAM_MOST]) {
   for (int t = 0; t < VS_TEAMS; t++)
-    for (int i = 0; i < VS_TEAM_SIZE; i++)
+    for (int i = 0; i < VS_TEAM_MOST; i++)
       if (vs_referee_off(r, (vs_team)t, i)) wheels[t][i] = (vs_wheels){0, 0};
 }
 

@@ -2,6 +2,8 @@
 #ifndef VSSS_REFEREE_INTERNAL_H
 #define VSSS_REFEREE_INTERNAL_H
 
+#include <math.h>
+
 #include "vsss/referee.h"
 
 // What one frame shows, worked out once for all rules.
@@ -42,6 +44,11 @@ void vs_shoot_out_step(vs_referee *referee, const vs_world *world, const vs_fact
 // Rows both tables have.
 bool vs_rule_time(const vs_referee *referee, const vs_facts *facts, vs_event *event);
 bool vs_rule_ball_out(const vs_referee *referee, const vs_facts *facts, vs_event *event);
+
+// In the area of the team that defends -x (side -1) or +x (side 1), the goal behind it included.
+static inline bool vs_in_area(const vs_pitch *field, int side, double x_m, double y_m) {
+  return side * x_m > field->half_length_m - field->area_depth_m && fabs(y_m) < field->area_half_width_m;
+}
 
 static inline vs_team vs_other_team(int team) { return team == VS_BLUE ? VS_YELLOW : VS_BLUE; }
 

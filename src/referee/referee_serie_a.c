@@ -28,28 +28,29 @@ static double covered(const vs_robot *robot, const vs_ball *ball) {
   return (half_m + VS_BALL_RADIUS_M - fmax(ahead, aside)) / (2 * VS_BALL_RADIUS_M);
 }
 
-static bool in_area_of(int team, const vs_robot *robot) {
-  double side = team == VS_BLUE ? -1 : 1;
-  return side * robot->pose.x_m > VS_FIELD_HALF_LENGTH_M - VS_AREA_DEPTH_M &&
-         fabs(robot->pose.y_m) < VS_AREA_HALF_WIDTH_M;
+static bool in_area_of(const vs_world *w, int team, const vs_robot *robot) {
+  return vs_in_area(vs_pitch_of(w->division), team == VS_BLUE ? -1 : 1, robot->pose.x_m, robot->pose.y_m);
 }
 
 // The keeper is the defender nearest to its goal's middle; a second one in the area that touches the ball interferes.
 static bool second_defender_interferes(const vs_world *w, int team) {
-  double goal_x_m = team == VS_BLUE ? -VS_FIELD_HALF_LENGTH_M : VS_FIELD_HALF_LENGTH_M, nearest_m = INFINITY;
+  const int team_size = vs_team_size(w);
+  double half_m = vs_pitch_of(w->division)->half_length_m, goal_x_m = team == VS_BLUE ? -half_m : half_m;
+  double nearest_m = INFINITY;
   int keeper = -1;
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+  for (int i = 0; i < team_size; i++) {
     const vs_pose *p = &w->robot[team][i].pose;
     double d = vs_distance_m(p->x_m, p->y_m, goal_x_m, 0);
-    if (in_area_of(team, &w->robot[team][i]) && d < nearest_m) nearest_m = d, keeper = i;
+    if (in_area_of(w, team, &w->robot[team][i]) && d < nearest_m) nearest_m = d, keeper = i;
   }
-  for (int i = 0; i < VS_TEAM_SIZE; i++)
-    if (i != keeper && in_area_of(team, &w->robot[team][i]) && touches_ball(&w->robot[team][i], &w->ball)) return true;
+  for (int i = 0; i < team_size; i++)
+    if (i != keeper && in_area_of(w, team, &w->robot[team][i]) && touches_ball(&w->robot[team][i], &w->ball))
+      return true;
   return false;
 }
 
 static bool touches_any(const vs_world *w, int team, const vs_robot *robot) {
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+  for (int i = 0, n = vs_team_size(w); i < n; i++) {
     const vs_pose *p = &w->robot[team][i].pose;
     if (vs_distance_m(p->x_m, p->y_m, robot->pose.x_m, robot->pose.y_m) <= TOUCH_ROBOT_M) return true;
   }
@@ -58,16 +59,17 @@ static bool touches_any(const vs_world *w, int team, const vs_robot *robot) {
 
 // The attacker nearest to the ball may be in the area; another one there that touches the ball or a defender interferes.
 static bool second_attacker_interferes(const vs_world *w, int defender) {
+  const int team_size = vs_team_size(w);
   int team = vs_other_team(defender), first = -1;
   double nearest_m = INFINITY;
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+  for (int i = 0; i < team_size; i++) {
     const vs_pose *p = &w->robot[team][i].pose;
     double d = vs_distance_m(p->x_m, p->y_m, w->ball.x_m, w->ball.y_m);
-    if (in_area_of(defender, &w->robot[team][i]) && d < nearest_m) nearest_m = d, first = i;
+    if (in_area_of(w, defender, &w->robot[team][i]) && d < nearest_m) nearest_m = d, first = i;
   }
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+  for (int i = 0; i < team_size; i++) {
     const vs_robot *r = &w->robot[team][i];
-    if (i == first || !in_area_of(defender, r)) continue;
+    if (i == first || !in_area_of(w, defender, r)) continue;
     if (touches_ball(r, &w->ball) || touches_any(w, defender, r)) return true;
   }
   return false;
@@ -75,8 +77,9 @@ static bool second_attacker_interferes(const vs_world *w, int defender) {
 
 // Whom of the other team a robot of this team pushes without the ball in this frame; NULL: nobody.
 static const vs_robot *pushed_by(const vs_world *w, int team) {
-  for (int k = 0; k < VS_TEAM_SIZE * VS_TEAM_SIZE; k++) {
-    const vs_robot *a = &w->robot[team][k / VS_TEAM_SIZE], *b = &w->robot[vs_other_team(team)][k % VS_TEAM_SIZE];
+  const int n = vs_team_size(w);
+  for (int k = 0; k < n * n; k++) {
+    const vs_robot *a = &w->robot[team][k / n], *b = &w->robot[vs_other_team(team)][k % n];
     double dx = b->pose.x_m - a->pose.x_m, dy = b->pose.y_m - a->pose.y_m, d = hypot(dx, dy);
     if (d > TOUCH_ROBOT_M || d <= 0) continue;
     bool with_ball = vs_distance_m(a->pose.x_m, a->pose.y_m, w->ball.x_m, w->ball.y_m) <= VS_PUSH_BALL_M ||
@@ -94,14 +97,14 @@ static void push_clocks(vs_referee *r, const vs_world *world, vs_facts *f) {
     if (!pushed || f->pusher >= 0 || !vs_reached(r->push_s[t], VS_PUSH_S, f->dt_s)) continue;
     int other = vs_other_team(t);
     f->pusher = t;
-    f->push_area = in_area_of(t, pushed) ? t : in_area_of(other, pushed) ? other : -1;
+    f->push_area = in_area_of(world, t, pushed) ? t : in_area_of(world, other, pushed) ? other : -1;
     f->push_quadrant = pushed->pose.y_m >= 0 ? (pushed->pose.x_m >= 0 ? 1 : 2) : (pushed->pose.x_m >= 0 ? 4 : 3);
   }
 }
 
 static int holder(const vs_world *w) {
   for (int t = 0; t < VS_TEAMS; t++)
-    for (int i = 0; i < VS_TEAM_SIZE; i++)
+    for (int i = 0, n = vs_team_size(w); i < n; i++)
       if (covered(&w->robot[t][i], &w->ball) > VS_HOLD_SHARE) return t;
   return -1;
 }

@@ -13,7 +13,9 @@ static const uint8_t hall_rgb[3] = {41, 46, 56};  // beside the goals
 static const uint8_t line_rgb[3] = {232, 232, 228};
 static const uint8_t team_rgb[VS_TEAMS][3] = {{24, 72, 232}, {250, 214, 20}};
 // Identity patches of a cap without a picture: robot 0 green, 1 magenta, 2 cyan, as VSSS teams print them.
-static const uint8_t patch_rgb[VS_TEAM_SIZE][3] = {{30, 200, 60}, {230, 40, 170}, {40, 210, 220}};
+// For people robots 3 and 4 are told apart by orange and white.
+static const uint8_t patch_rgb[VS_TEAM_MOST][3] = {
+    {30, 200, 60}, {230, 40, 170}, {40, 210, 220}, {240, 130, 30}, {235, 235, 235}};
 
 static double box_edge_m(double x, double y, double half_x, double half_y) { // distance to a rectangle's outline
   double dx = fabs(x) - half_x, dy = fabs(y) - half_y;
@@ -29,28 +31,29 @@ static double cross_m(double x, double y, double arm) { // distance to a plus si
 }
 
 // Distance of a floor point to the nearest line. Both halves and both sides are alike: only |x|, |y| count.
-static double line_distance_m(double x, double y) {
+static double line_distance_m(const vs_pitch *p, double x, double y) {
   double ax = fabs(x), ay = fabs(y), d = 1.0;
-  if (ax <= VS_FIELD_HALF_LENGTH_M) {
+  if (ax <= p->half_length_m) {
     d = fmin(d, ax);                                       // half-way line
-    d = fmin(d, fabs(hypot(ax, ay) - VS_CIRCLE_RADIUS_M)); // circle
-    d = fmin(d, cross_m(ax - VS_FREE_BALL_MARK_X_M, ay - VS_FREE_BALL_MARK_Y_M, 0.015));
-    d = fmin(d, cross_m(ax - VS_PENALTY_MARK_X_M, ay, 0.015));
-    d = fmin(d, box_edge_m(ax - VS_FIELD_HALF_LENGTH_M, ay, VS_AREA_DEPTH_M, VS_AREA_HALF_WIDTH_M)); // goal area
+    d = fmin(d, fabs(hypot(ax, ay) - p->circle_radius_m)); // circle
+    d = fmin(d, cross_m(ax - p->free_ball_mark_x_m, ay - p->free_ball_mark_y_m, 0.015));
+    d = fmin(d, cross_m(ax - p->penalty_mark_x_m, ay, 0.015));
+    d = fmin(d, box_edge_m(ax - p->half_length_m, ay, p->area_depth_m, p->area_half_width_m)); // goal area
   }
-  if (ay <= VS_GOAL_HALF_WIDTH_M) d = fmin(d, fabs(ax - VS_FIELD_HALF_LENGTH_M)); // goal line
+  if (ay <= p->goal_half_width_m) d = fmin(d, fabs(ax - p->half_length_m)); // goal line
   return d;
 }
 
-void vs_paint_floor(uint8_t *rgb, int width, int height, double half_x_m, double half_y_m) {
+void vs_paint_floor(uint8_t *rgb, int width, int height, const vs_pitch *pitch) {
+  double half_x_m = pitch->half_length_m + pitch->goal_depth_m, half_y_m = pitch->half_width_m;
   double texel_m = 2.0 * half_x_m / width;
   for (int row = 0; row < height; row++)
     for (int column = 0; column < width; column++) {
       double x = (column + 0.5) * texel_m - half_x_m;
       double y = half_y_m - (row + 0.5) * 2.0 * half_y_m / height;
       // Coverage of the texel by the line, for smooth edges.
-      double cover = fmin(fmax((LINE_HALF_M - line_distance_m(x, y)) / texel_m + 0.5, 0.0), 1.0);
-      bool inside = fabs(x) <= VS_FIELD_HALF_LENGTH_M || fabs(y) <= VS_GOAL_HALF_WIDTH_M;
+      double cover = fmin(fmax((LINE_HALF_M - line_distance_m(pitch, x, y)) / texel_m + 0.5, 0.0), 1.0);
+      bool inside = fabs(x) <= pitch->half_length_m || fabs(y) <= pitch->goal_half_width_m;
       const uint8_t *ground = inside ? floor_rgb : hall_rgb;
       for (int c = 0; c < 3; c++) *rgb++ = (uint8_t)lround(ground[c] + cover * (line_rgb[c] - ground[c]));
     }
@@ -65,7 +68,9 @@ static void colour_cap(double u, double v, vs_team team, int index, vs_view view
   }
   // For people: the back half in the team's colour, the front half with two identity patches, dark seams between.
   bool seam = fabs(u) > 0.46 || fabs(v) > 0.46 || fabs(u) < 0.03 || (u > 0 && fabs(v) < 0.03);
-  const uint8_t *colour = u < 0 ? team_rgb[team] : v > 0 ? patch_rgb[index] : patch_rgb[(index + 1) % VS_TEAM_SIZE];
+  const uint8_t *colour = u < 0   ? team_rgb[team]
+                          : v > 0 ? patch_rgb[index]
+                                  : patch_rgb[index < VS_TEAM_SIZE ? (index + 1) % VS_TEAM_SIZE : index];
   memcpy(rgb, seam ? dark : colour, 3);
 }
 

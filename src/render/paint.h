@@ -7,7 +7,7 @@
 #include "vsss/render.h"
 
 // rgb: uint8_t[height][width][3] over x in +-half_x_m (left to right) and y in +-half_y_m (top row is +y).
-void vs_paint_floor(uint8_t *rgb, int width, int height, double half_x_m, double half_y_m);
+void vs_paint_floor(uint8_t *rgb, int width, int height, const vs_pitch *pitch);
 
 // The texture of a cap of VS_ROBOT_SIZE_M: column 0 at the robot's back, top row at its left, as MuJoCo lays a texture on
 // a plane. cap->rgb NULL: colours.

@@ -16,9 +16,9 @@
 
 #define CAMERA_NEAR_M 0.05
 // What the overhead camera must show: the goals with their walls, and the side walls.
-#define CAMERA_HALF_X_M 0.90
-#define CAMERA_HALF_Y_M 0.68
-#define BALL_SLOT       (VS_TEAMS * VS_TEAM_SIZE)
+#define CAMERA_BEHIND_GOAL_M 0.05
+#define CAMERA_BESIDE_M      0.03
+#define SLOTS_MOST           (VS_TEAMS * VS_TEAM_MOST + 1)
 
 struct vs_render {
   vs_render_def def;
@@ -29,8 +29,9 @@ struct vs_render {
   mjvScene scene;
   mjrContext context;
   bool has_context; // scene and context hold something to free
-  int mocap[BALL_SLOT + 1];
-  float lamp[3]; // where its light goes
+  const vs_pitch *pitch;
+  int robots, mocap[SLOTS_MOST]; // the ball is in the slot after the robots
+  float lamp[3];                 // where its light goes
   vs_tile_picture picture;
   uint8_t *still; // the picture without pieces, top row first: drawn once, as most of every picture is this
   uint8_t *part;  // as OpenGL gives it, bottom row first
@@ -48,8 +49,8 @@ static vs_status check(const vs_render_def *def, vs_error *err) {
                    def->height_px);
   if (!(def->camera_height_m >= 1.0 && def->camera_height_m <= 5.0))
     return vs_fail(err, VS_USAGE, "camera height %g m: allowed are 1 to 5", def->camera_height_m);
-  for (int i = 0; i < BALL_SLOT; i++) {
-    const vs_cap *cap = &def->cap[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_MOST; i++) {
+    const vs_cap *cap = &def->cap[i / VS_TEAM_MOST][i % VS_TEAM_MOST];
     if (cap->rgb && (cap->px < 1 || !(cap->size_m > 0.0 && cap->size_m <= VS_ROBOT_SIZE_M)))
       return vs_fail(err, VS_USAGE, "cap picture of %d pixels and %g m: must fit the %g m cap", cap->px, cap->size_m,
                      VS_ROBOT_SIZE_M);
@@ -57,11 +58,17 @@ static vs_status check(const vs_render_def *def, vs_error *err) {
   return VS_OK;
 }
 
-static void piece_name(int slot, char *name, size_t size) {
-  if (slot == BALL_SLOT)
+static int team_of(const vs_render *r, int slot) { return slot / r->pitch->team_size; }
+static int index_in_team(const vs_render *r, int slot) { return slot % r->pitch->team_size; }
+static const vs_robot *robot_of(const vs_render *r, const vs_world *w, int slot) {
+  return &w->robot[team_of(r, slot)][index_in_team(r, slot)];
+}
+
+static void piece_name(const vs_render *r, int slot, char *name, size_t size) {
+  if (slot == r->robots)
     snprintf(name, size, "ball");
   else
-    snprintf(name, size, "%s%d", vs_team_name((vs_team)(slot / VS_TEAM_SIZE)), slot % VS_TEAM_SIZE);
+    snprintf(name, size, "%s%d", vs_team_name((vs_team)team_of(r, slot)), index_in_team(r, slot));
 }
 
 // The texture's bytes in the model, or NULL.
@@ -75,7 +82,8 @@ static uint8_t *texture(mjModel *m, const char *name, int *width, int *height) {
 
 static vs_status load_model(vs_render *r, vs_error *err) {
   char path[512], why[256] = "", name[16];
-  vs_status s = vs_path_find("models/vsss_visual.xml", path, sizeof path, err);
+  const char *file = r->def.division == VS_3V3 ? "models/vsss_visual.xml" : "models/vsss_visual_5v5.xml";
+  vs_status s = vs_path_find(file, path, sizeof path, err);
   if (s != VS_OK) return s;
   r->model = mj_loadXML(path, NULL, why, sizeof why);
   if (!r->model) return vs_fail(err, VS_FAIL, "%s: %s", path, why);
@@ -83,16 +91,16 @@ static vs_status load_model(vs_render *r, vs_error *err) {
   int width, height;
   uint8_t *rgb = texture(r->model, "floor", &width, &height);
   if (!rgb) return vs_fail(err, VS_FAIL, "%s: no texture 'floor'", path);
-  vs_paint_floor(rgb, width, height, VS_FIELD_HALF_LENGTH_M + VS_GOAL_DEPTH_M, VS_FIELD_HALF_WIDTH_M);
-  for (int i = 0; i <= BALL_SLOT; i++) {
-    piece_name(i, name, sizeof name);
+  vs_paint_floor(rgb, width, height, r->pitch);
+  for (int i = 0; i <= r->robots; i++) {
+    piece_name(r, i, name, sizeof name);
     int body = mj_name2id(r->model, mjOBJ_BODY, name);
     r->mocap[i] = body < 0 ? -1 : r->model->body_mocapid[body];
     if (r->mocap[i] < 0) return vs_fail(err, VS_FAIL, "%s: no mocap body '%s'", path, name);
-    if (i == BALL_SLOT) break;
+    if (i == r->robots) break;
     if (!(rgb = texture(r->model, name, &width, &height)) || width != height)
       return vs_fail(err, VS_FAIL, "%s: no square texture '%s'", path, name);
-    int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE;
+    int team = team_of(r, i), index = index_in_team(r, i);
     vs_paint_cap(rgb, width, (vs_team)team, index, r->def.view, &r->def.cap[team][index]);
   }
   return VS_OK;
@@ -129,7 +137,7 @@ static void set_quality(vs_render *r) {
 
 static void make_scene(vs_render *r) {
   mjv_defaultScene(&r->scene);
-  mjv_makeScene(r->model, &r->scene, 200);
+  mjv_makeScene(r->model, &r->scene, 300);
   mjr_defaultContext(&r->context);
   int half_steps = r->def.height_px / 180; // MuJoCo's fonts come in 50 %, 100 %, ... 300 %; 200 % suits 720 rows
   mjr_makeContext(r->model, &r->context, 50 * (half_steps < 1 ? 1 : half_steps > 6 ? 6 : half_steps));
@@ -143,7 +151,9 @@ static void make_scene(vs_render *r) {
 }
 
 vs_pinhole vs_render_pinhole(const vs_render *r) {
-  double fit_x = r->def.width_px / (2.0 * CAMERA_HALF_X_M), fit_y = r->def.height_px / (2.0 * CAMERA_HALF_Y_M);
+  double half_x_m = r->pitch->half_length_m + r->pitch->goal_depth_m + CAMERA_BEHIND_GOAL_M;
+  double half_y_m = r->pitch->half_width_m + CAMERA_BESIDE_M;
+  double fit_x = r->def.width_px / (2.0 * half_x_m), fit_y = r->def.height_px / (2.0 * half_y_m);
   return (vs_pinhole){.width_px = r->def.width_px,
                       .height_px = r->def.height_px,
                       .focal_px = fmin(fit_x, fit_y) * r->def.camera_height_m,
@@ -163,11 +173,11 @@ static void put(vs_render *r, int slot, bool shown, double x_m, double y_m, doub
 }
 
 static void put_world(vs_render *r, const vs_world *w) {
-  for (int i = 0; i < BALL_SLOT; i++) {
-    const vs_robot *robot = &w->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+  for (int i = 0; i < r->robots; i++) {
+    const vs_robot *robot = robot_of(r, w, i);
     put(r, i, robot->valid, robot->pose.x_m, robot->pose.y_m, 0.0, robot->pose.theta_rad);
   }
-  put(r, BALL_SLOT, w->ball.valid, w->ball.x_m, w->ball.y_m, w->ball.z_m, 0.0);
+  put(r, r->robots, w->ball.valid, w->ball.x_m, w->ball.y_m, w->ball.z_m, 0.0);
   mj_kinematics(r->model, r->data);
   mj_comPos(r->model, r->data);
   mj_camlight(r->model, r->data);
@@ -188,8 +198,8 @@ static mjvGLCamera overhead(const vs_render *r) {
 static void add_shadows(vs_render *r, const vs_world *w) {
   vs_shadow_add_walls(&r->scene, r->lamp);
   const mjtNum cube[3] = {0.5 * VS_ROBOT_SIZE_M, 0.5 * VS_ROBOT_SIZE_M, 0.5 * VS_ROBOT_SIZE_M};
-  for (int i = 0; i < BALL_SLOT; i++) {
-    const vs_robot *robot = &w->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+  for (int i = 0; i < r->robots; i++) {
+    const vs_robot *robot = robot_of(r, w, i);
     if (!robot->valid) continue;
     mjtNum centre[3] = {robot->pose.x_m, robot->pose.y_m, 0.5 * VS_ROBOT_SIZE_M};
     mjtNum c = cos(robot->pose.theta_rad), s = sin(robot->pose.theta_rad), turn[9] = {c, -s, 0, s, c, 0, 0, 0, 1};
@@ -208,8 +218,9 @@ static void set_scene(vs_render *r, const vs_world *world) {
   mjvCamera camera;
   mjv_defaultOption(&option);
   mjv_defaultCamera(&camera);
-  camera.lookat[1] = -0.03;
-  camera.distance = 1.78;
+  double larger = r->pitch->half_length_m / VS_FIELD_HALF_LENGTH_M; // than the field of 3 against 3
+  camera.lookat[1] = -0.03 * larger;
+  camera.distance = 1.78 * larger;
   camera.azimuth = 90;
   camera.elevation = -60;
   mjv_updateScene(r->model, r->data, &option, NULL, &camera, mjCAT_ALL, &r->scene);
@@ -238,7 +249,7 @@ static void draw_part(vs_render *r, mjrRect part, uint8_t *rgb) {
 }
 
 static void draw_still(vs_render *r) {
-  static const vs_world empty;
+  const vs_world empty = {.division = r->def.division};
   set_scene(r, &empty);
   draw_part(r, (mjrRect){0, 0, r->def.width_px, r->def.height_px}, r->still);
 }
@@ -262,6 +273,8 @@ vs_status vs_render_new(const vs_render_def *def, vs_render **out, vs_error *err
   vs_render *r = calloc(1, sizeof *r);
   if (!r) return vs_fail(err, VS_FAIL, "out of memory");
   r->def = *def;
+  r->pitch = vs_pitch_of(def->division);
+  r->robots = VS_TEAMS * r->pitch->team_size;
   vs_render_set_title(r, def->title);
   size_t bytes = (size_t)def->width_px * def->height_px * 3;
   r->still = malloc(bytes);
@@ -300,11 +313,14 @@ void vs_render_free(vs_render *r) {
 }
 
 vs_status vs_render_world(vs_render *r, const vs_world *world, const vs_game *game, uint8_t *rgb, vs_error *err) {
+  if (world->division != r->def.division)
+    return vs_fail(err, VS_FAIL, "a world of %s for a renderer of %s", vs_pitch_of(world->division)->name,
+                   r->pitch->name);
   if (!vs_gl_context_bind(r->gl)) return vs_fail(err, VS_FAIL, "the renderer's context is in use by another thread");
   set_scene(r, world);
   memcpy(rgb, r->still, (size_t)r->def.width_px * r->def.height_px * 3);
-  for (int i = 0; i < BALL_SLOT; i++) {
-    const vs_robot *robot = &world->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+  for (int i = 0; i < r->robots; i++) {
+    const vs_robot *robot = robot_of(r, world, i);
     draw_piece(r, robot->valid, robot->pose.x_m, robot->pose.y_m, 0.0, VS_ROBOT_SIZE_M, VS_ROBOT_SIZE_M * M_SQRT1_2,
                rgb);
   }

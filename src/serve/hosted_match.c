@@ -23,15 +23,17 @@ struct vs_hosted {
   vs_hosted_said said; // gathered for the next frame
   double phase_s;      // spent in this phase
   double frame_s;      // 1 / frame_hz
-  int broken;          // the team whose player failed; -1: none
-  bool goal_seen;      // without our referee: this goal is counted
+  vs_division division;
+  int team_size;
+  int broken;     // the team whose player failed; -1: none
+  bool goal_seen; // without our referee: this goal is counted
   uint64_t hash;
   int64_t silent_frames[VS_TEAMS];
-  vs_wheels held[VS_TEAMS][VS_TEAM_SIZE];   // from outside, rad/s of our wheels
-  vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE]; // in force
+  vs_wheels held[VS_TEAMS][VS_TEAM_MOST];   // from outside, rad/s of our wheels
+  vs_wheels wheels[VS_TEAMS][VS_TEAM_MOST]; // in force
   bool placed[VS_TEAMS];                    // a legal placement came for this restart
   bool drove[VS_TEAMS];                     // wheels were commanded while it was called
-  vs_pose place[VS_TEAMS][VS_TEAM_SIZE];
+  vs_pose place[VS_TEAMS][VS_TEAM_MOST];
   bool asked[VS_TEAMS]; // for a time-out that has not begun
   int time_outs[VS_TEAMS];
   vs_world placed_at;   // where all were put at STOP
@@ -54,6 +56,8 @@ static vs_status open_player(vs_hosted *m, int team, vs_error *err) {
     vs_player_close(player);
     return s;
   }
+  s = vs_control_plays(m->control[team], m->division, err);
+  if (s != VS_OK) return s;
   return vs_control_reset(m->control[team], vs_seed_mix(m->def.seed, SEED_PLAYER + (uint64_t)team), false, err);
 }
 
@@ -62,6 +66,8 @@ vs_status vs_hosted_new(const vs_hosted_def *def, vs_hosted **out, vs_error *err
   if (!m) return vs_fail(err, VS_FAIL, "out of memory for a match");
   m->def = *def;
   m->frame_s = 1.0 / vs_model_frame_hz(def->model);
+  m->division = vs_model_division(def->model);
+  m->team_size = vs_pitch_of(m->division)->team_size;
   m->hash = VS_HASH_START;
   m->broken = -1;
   m->rng = vs_rng_make(def->seed, SEED_PLACEMENT);
@@ -92,7 +98,7 @@ void vs_hosted_free(vs_hosted *m) {
 // --- from outside -----------------------------------------------------------------------------------------------------
 
 bool vs_hosted_command(vs_hosted *m, vs_team team, int robot, vs_wheels wheels) {
-  if (m->control[team]) return false;
+  if (m->control[team] || robot >= m->team_size) return false;
   m->silent_frames[team] = 0;
   if (m->phase == VS_PHASE_CALLED && (wheels.left_radps != 0 || wheels.right_radps != 0)) m->drove[team] = true;
   vs_wheels ours = vs_robot_preset_wheels(m->def.robot, wheels);
@@ -114,18 +120,19 @@ bool vs_hosted_replace(vs_hosted *m, const vs_fira_packet *p) {
   if (m->def.mode == VS_REFEREE_OWN) return false;
   vs_world placed = m->truth;
   if (p->places_ball) placed.ball = p->ball;
-  for (int k = 0; k < p->robots; k++) placed.robot[p->place[k].team][p->place[k].robot].pose = p->place[k].pose;
+  for (int k = 0; k < p->robots; k++)
+    if (p->place[k].robot < m->team_size) placed.robot[p->place[k].team][p->place[k].robot].pose = p->place[k].pose;
   put(m, &placed);
   return true;
 }
 
 vs_status vs_hosted_place(vs_hosted *m, const vs_ref_placement *p, vs_error *err) {
   if (m->phase != VS_PHASE_CALLED || m->control[p->team]) return VS_OK;
-  vs_pose pose[VS_TEAM_SIZE];
-  vs_place_team(&m->restart, p->team, pose);
-  for (int i = 0; i < VS_TEAM_SIZE; i++)
+  vs_pose pose[VS_TEAM_MOST] = {{0}};
+  vs_place_team(m->division, &m->restart, p->team, pose);
+  for (int i = 0; i < m->team_size; i++)
     if (p->given[i]) pose[i] = p->pose[i];
-  vs_status s = vs_placement_check(&m->restart, p->team, pose, err);
+  vs_status s = vs_placement_check(m->division, &m->restart, p->team, pose, err);
   if (s != VS_OK) return s;
   m->placed[p->team] = true;
   memcpy(m->place[p->team], pose, sizeof pose);
@@ -222,8 +229,8 @@ void vs_hosted_hear(vs_hosted *m, const vs_ref_command *call) {
 // --- restarts ---------------------------------------------------------------------------------------------------------
 
 static bool overlap(const vs_world *w) {
-  for (int i = 0; i < VS_TEAM_SIZE; i++)
-    for (int k = 0; k < VS_TEAM_SIZE; k++) {
+  for (int i = 0, n = vs_team_size(w); i < n; i++)
+    for (int k = 0; k < n; k++) {
       const vs_pose *a = &w->robot[VS_BLUE][i].pose, *b = &w->robot[VS_YELLOW][k].pose;
       if (vs_distance_m(a->x_m, a->y_m, b->x_m, b->y_m) < VS_ROBOT_SIZE_M) return true;
     }
@@ -231,14 +238,14 @@ static bool overlap(const vs_world *w) {
 }
 
 // A placement that was sent, else robots of a team from outside that drove to legal places.
-static bool own_places(vs_hosted *m, int team, vs_pose pose[VS_TEAM_SIZE]) {
+static bool own_places(vs_hosted *m, int team, vs_pose pose[VS_TEAM_MOST]) {
   if (m->control[team]) return false;
   if (m->placed[team]) {
     memcpy(pose, m->place[team], sizeof m->place[team]);
     return true;
   }
-  for (int i = 0; i < VS_TEAM_SIZE; i++) pose[i] = m->truth.robot[team][i].pose;
-  return m->drove[team] && vs_placement_check(&m->restart, (vs_team)team, pose, NULL) == VS_OK;
+  for (int i = 0; i < m->team_size; i++) pose[i] = m->truth.robot[team][i].pose;
+  return m->drove[team] && vs_placement_check(m->division, &m->restart, (vs_team)team, pose, NULL) == VS_OK;
 }
 
 static void place_all(vs_hosted *m) {
@@ -250,12 +257,13 @@ static void place_all(vs_hosted *m) {
   int kicker = m->call.team < 0 ? VS_BLUE : m->call.team;
   for (int k = 0; k < VS_TEAMS; k++) {
     int t = k == 0 ? kicker : !kicker;
-    vs_pose pose[VS_TEAM_SIZE];
+    vs_pose pose[VS_TEAM_MOST];
     if (!own_places(m, t, pose)) continue;
     vs_world with = placed;
-    for (int i = 0; i < VS_TEAM_SIZE; i++) with.robot[t][i].pose = pose[i];
-    for (int i = 0; i < VS_TEAM_SIZE; i++)
-      if (vs_referee_off(&m->referee, (vs_team)t, i)) with.robot[t][i].pose = vs_world_beside((vs_team)t, i);
+    for (int i = 0; i < m->team_size; i++) with.robot[t][i].pose = pose[i];
+    for (int i = 0; i < m->team_size; i++)
+      if (vs_referee_off(&m->referee, (vs_team)t, i))
+        with.robot[t][i].pose = vs_world_beside(m->division, (vs_team)t, i);
     if (!overlap(&with)) placed = with;
   }
   put(m, &placed);
@@ -281,7 +289,7 @@ static bool may_start(vs_hosted *m, vs_event *event) {
 
 static void send_off(vs_hosted *m) {
   for (int t = 0; t < VS_TEAMS; t++)
-    for (int i = 0; i < VS_TEAM_SIZE; i++)
+    for (int i = 0; i < m->team_size; i++)
       if (vs_referee_off(&m->referee, (vs_team)t, i)) vs_sim_put_beside(m->sim, (vs_team)t, i);
   vs_sim_world(m->sim, &m->truth);
 }
@@ -319,7 +327,9 @@ static void referee_frame(vs_hosted *m, vs_event *event) {
 static void count_goals(vs_hosted *m, vs_event *event) {
   m->referee.game.time_s += m->phase == VS_PHASE_PLAY ? m->frame_s : 0;
   const vs_ball *ball = &m->truth.ball;
-  bool in_goal = fabs(ball->x_m) > VS_FIELD_HALF_LENGTH_M + VS_BALL_RADIUS_M && fabs(ball->y_m) < VS_GOAL_HALF_WIDTH_M;
+  const vs_pitch *pitch = vs_pitch_of(m->division);
+  bool in_goal =
+      fabs(ball->x_m) > pitch->half_length_m + VS_BALL_RADIUS_M && fabs(ball->y_m) < pitch->goal_half_width_m;
   if (in_goal && !m->goal_seen) {
     *event = (vs_event){
         .kind = VS_EVENT_GOAL, .team = ball->x_m > 0 ? VS_BLUE : VS_YELLOW, .time_s = m->referee.game.time_s};
@@ -354,7 +364,7 @@ static vs_status decide(vs_hosted *m, vs_error *err) {
 vs_status vs_hosted_frame(vs_hosted *m, vs_hosted_said *said, vs_error *err) {
   vs_status s = decide(m, err);
   vs_referee_hold_off(&m->referee, m->wheels);
-  if (s == VS_OK) s = vs_sim_frame(m->sim, (const vs_wheels(*)[VS_TEAM_SIZE])m->wheels, err);
+  if (s == VS_OK) s = vs_sim_frame(m->sim, (const vs_wheels(*)[VS_TEAM_MOST])m->wheels, err);
   if (s != VS_OK) {
     vs_fail_prefix(err, "match at %.2f s", m->referee.game.time_s);
     return s;
@@ -378,7 +388,7 @@ vs_phase vs_hosted_phase(const vs_hosted *m) { return m->phase; }
 const vs_ref_command *vs_hosted_call(const vs_hosted *m) { return &m->call; }
 int vs_hosted_broken(const vs_hosted *m) { return m->broken; }
 uint64_t vs_hosted_hash(const vs_hosted *m) { return m->hash; }
-void vs_hosted_wheels(const vs_hosted *m, vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]) {
+void vs_hosted_wheels(const vs_hosted *m, vs_wheels out[VS_TEAMS][VS_TEAM_MOST]) {
   memcpy(out, m->wheels, sizeof m->wheels);
 }
 double vs_hosted_silence_s(const vs_hosted *m, vs_team team) {

@@ -16,7 +16,7 @@ struct vs_outbox {
   size_t size;
   int64_t due_us, unsent;
   vs_histogram late;
-  uint8_t bytes[VS_LEAGUE_DATAGRAM_MAX];
+  uint8_t bytes[VS_LEAGUE_DATAGRAM_5V5_MAX];
 };
 
 static void *work(void *context) {

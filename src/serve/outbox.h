@@ -12,7 +12,7 @@ typedef struct vs_outbox vs_outbox;
 vs_status vs_outbox_new(const vs_udp *to, vs_outbox **out, vs_error *err);
 void vs_outbox_free(vs_outbox *box); // what it holds is sent first; NULL is allowed
 
-// Waits while the one before has not gone. size: at most VS_LEAGUE_DATAGRAM_MAX. due_us: of the monotonic clock; past: at once.
+// Waits while the one before has not gone. size: at most VS_LEAGUE_DATAGRAM_5V5_MAX. due_us: of the monotonic clock; past: at once.
 void vs_outbox_put(vs_outbox *box, const uint8_t *data, size_t size, int64_t due_us);
 
 void vs_outbox_flush(vs_outbox *box); // waits until it has gone; NULL is allowed

@@ -24,6 +24,7 @@ typedef struct remote {
 
 struct vs_serve {
   vs_serve_def def;
+  vs_division division;
   vs_hosted *match;
   vs_udp vision, vision_claim;
   vs_udp command, team[VS_TEAMS], placer, referee_in;
@@ -95,6 +96,7 @@ vs_status vs_serve_new(const vs_serve_def *def, vs_serve **out, vs_error *err) {
                    &s->placer, &s->referee_in,   &s->referee_out[0], &s->referee_out[1]};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) *all[i] = VS_UDP_CLOSED;
   s->def = *def;
+  s->division = vs_model_division(def->match.model);
   s->period_us = 1000000 / vs_model_frame_hz(def->match.model);
   for (int t = 0; t < VS_TEAMS; t++) s->remote[t].expected = !def->match.player[t];
   status = vs_hosted_new(&def->match, &s->match, err);
@@ -164,6 +166,7 @@ static void read_packets(vs_serve *s, const vs_udp *from, int can, int only) {
       s->stats.garbage++;
       continue;
     }
+    vs_fira_packet_fit(&p, s->division);
     s->stats.dropped += p.dropped;
     if (can & CAN_COMMAND)
       take_commands(s, &p, only);
@@ -306,7 +309,8 @@ static size_t write_world(vs_serve *s) {
   int64_t tick_us = s->def.dialect == VS_DIALECT_TRAVESIM ? 10000 : 1000;
   e.step = (uint32_t)(e.world.time_us / tick_us);
   memcpy(e.goals, game->score, sizeof e.goals);
-  size_t size = vs_fira_environment_encode(&e, s->bytes, VS_LEAGUE_DATAGRAM_MAX);
+  size_t most = s->division == VS_3V3 ? VS_LEAGUE_DATAGRAM_MAX : VS_LEAGUE_DATAGRAM_5V5_MAX;
+  size_t size = vs_fira_environment_encode(&e, s->bytes, most);
   log_sent(s, VS_LEAGUE_VISION, size);
   return size;
 }

@@ -14,10 +14,10 @@
 #define SLIP_DECAY_PER_S (2 / (0.95 * 0.015))
 #define SWEEPS           6 // of projected Gauss-Seidel, only for a robot that slips
 
-double vs_drive_target(const vs_sim_params *params, int robot, int side, double command_radps) {
+double vs_drive_target(const vs_sim_params *params, int team, int index, int side, double command_radps) {
   if (fabs(command_radps) < params->dead_zone_radps) return 0;
   double limit = VS_WHEEL_LIMIT_RADPS * params->wheel_limit_scale;
-  return vs_clamp(command_radps, -limit, limit) * params->wheel_gain[robot / VS_TEAM_SIZE][robot % VS_TEAM_SIZE][side];
+  return vs_clamp(command_radps, -limit, limit) * params->wheel_gain[team][index][side];
 }
 
 // One robot's step, in its own axes: u forward, s to the left, w about the vertical.
@@ -110,7 +110,7 @@ static void step_planar_robot(vs_sim *sim, int index) {
   const double *v = d->qvel + address->qvel, *push = d->qfrc_constraint + address->qvel; // contacts of the last step
   double *applied = d->qfrc_applied + address->qvel;
   wheel_state *wheel = sim->wheel[index];
-  int team = index / VS_TEAM_SIZE, i = index % VS_TEAM_SIZE;
+  int team = team_of(sim->model, index), i = index_in_team(sim->model, index);
   traction t = {.dt = sim->mj->opt.timestep,
                 .mass = sim->mj->body_mass[address->body],
                 .inertia = sim->mj->body_inertia[3 * address->body + 2],
@@ -158,10 +158,10 @@ static double ramp(double from, double to, double up, double down) {
   return slower;
 }
 
-void vs_drive_step(vs_sim *sim, const double target[ROBOTS][SIDES]) {
+void vs_drive_step(vs_sim *sim, const double target[ROBOTS_MOST][SIDES]) {
   const vs_sim_params *p = &sim->params;
   double per_step = sim->mj->opt.timestep / VS_WHEEL_RADIUS_M;
-  for (int i = 0; i < ROBOTS; i++) {
+  for (int i = 0; i < sim->model->robots; i++) {
     for (int side = LEFT; side < SIDES; side++) {
       wheel_state *wheel = &sim->wheel[i][side];
       double next = wheel->target_radps + sim->lag * (target[i][side] - wheel->target_radps);

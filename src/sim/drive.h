@@ -22,10 +22,10 @@
 #define BALL_ROLLING_M 6.1e-4 // rolling: 5/7 g times this over the radius
 
 // sat(command) * gain, nothing inside the dead zone (field.md, Ranges).
-double vs_drive_target(const vs_sim_params *params, int robot, int side, double command_radps);
+double vs_drive_target(const vs_sim_params *params, int team, int index, int side, double command_radps);
 
 // Once a step, before mj_step: motors one step on, and their effect into ctrl (contact) or qfrc_applied (planar).
-void vs_drive_step(vs_sim *sim, const double target[ROBOTS][SIDES]);
+void vs_drive_step(vs_sim *sim, const double target[ROBOTS_MOST][SIDES]);
 
 // Planar drive, once a step before mj_step: the floor's friction on the ball into qfrc_applied.
 void vs_ball_step(vs_sim *sim);

@@ -12,21 +12,21 @@
 // A robot's hull lies within this of its place on the floor: half its diagonal, 5.7 cm, and 2.5 cm for tilting in a crash.
 #define ROBOT_REACH_M (0.057 + 0.025)
 #define BALL_REACH_M  (VS_BALL_RADIUS_M + 0.002)
-#define BODIES        (ROBOTS + 1) // the ball is last
-#define BALL          ROBOTS
-#define EVERYTHING    UINT32_MAX
+#define BODIES_MOST   (ROBOTS_MOST + 1)   // the ball is last: 11 bodies, 55 couples
+#define ALWAYS        (UINT32_C(1) << 31) // a bit of `walls` that no body has: pairs that are always near
 
-// Bits: one per body for "near a wall", then one per couple of bodies for "near each other".
+static const near_bits everything = {UINT32_MAX, UINT64_MAX};
+
 static int couple_bit(int a, int b) {
   int low = a < b ? a : b, high = a < b ? b : a;
-  return BODIES + high * (high - 1) / 2 + low;
+  return high * (high - 1) / 2 + low;
 }
 
 static int body_index(const vs_model *model, int body) {
-  for (int i = 0; i < ROBOTS; i++) {
+  for (int i = 0; i < model->robots; i++) {
     if (model->robot[i].body == body) return i;
   }
-  return body == model->ball_body ? BALL : -1;
+  return body == model->ball_body ? model->robots : -1;
 }
 
 // Floor and lid are always near, so are bodies that this file does not follow (wheels).
@@ -38,23 +38,24 @@ void vs_nearby_bind(vs_model *model) {
     for (int k = 0; k < 2; k++) body[k] = body_index(model, mj->geom_bodyid[geom[k]]);
     bool of_world = mj->geom_bodyid[geom[0]] == 0 || mj->geom_bodyid[geom[1]] == 0;
     int moving = body[0] >= 0 ? body[0] : body[1];
-    uint32_t bits = EVERYTHING;
+    near_bits bits = everything;
     if (body[0] >= 0 && body[1] >= 0) {
-      bits = UINT32_C(1) << couple_bit(body[0], body[1]);
+      bits = (near_bits){0, UINT64_C(1) << couple_bit(body[0], body[1])};
     } else if (of_world && moving >= 0 && geom[0] != floor && geom[1] != floor && geom[0] != lid && geom[1] != lid) {
-      bits = UINT32_C(1) << moving;
+      bits = (near_bits){UINT32_C(1) << moving, 0};
     }
     model->pair_bits[pair] = bits;
   }
 }
 
 // The pairs of sim->mj whose bits are set, copied together for MuJoCo's loop over them.
-static void select_pairs(vs_sim *sim, uint32_t bits) {
+static void select_pairs(vs_sim *sim, near_bits bits) {
   const mjModel *from = sim->mj;
   mjModel *to = &sim->view;
   int n = 0;
   for (int pair = 0; pair < from->npair; pair++) {
-    if (!(sim->model->pair_bits[pair] & bits)) continue;
+    const near_bits *needs = &sim->model->pair_bits[pair];
+    if (!(needs->walls & bits.walls) && !(needs->couples & bits.couples)) continue;
     to->pair_dim[n] = from->pair_dim[pair];
     to->pair_geom1[n] = from->pair_geom1[pair];
     to->pair_geom2[n] = from->pair_geom2[pair];
@@ -89,37 +90,39 @@ void vs_nearby_reset(vs_sim *sim) {
   view->pair_geom1 = view->pair_dim + pairs;
   view->pair_geom2 = view->pair_geom1 + pairs;
   view->pair_signature = view->pair_geom2 + pairs;
-  select_pairs(sim, EVERYTHING);
+  select_pairs(sim, everything);
 }
 
 // Walls are half spaces: who stands there for good was sent off.
-static bool beside(double x, double y) {
-  return fabs(x) > VS_FIELD_HALF_LENGTH_M + VS_BESIDE_M || fabs(y) > VS_FIELD_HALF_WIDTH_M + VS_BESIDE_M;
+static bool beside(const vs_pitch *field, double x, double y) {
+  return fabs(x) > field->half_length_m + VS_BESIDE_M || fabs(y) > field->half_width_m + VS_BESIDE_M;
 }
 
-static bool near_wall(double x, double y, double reach) {
+static bool near_wall(const vs_pitch *field, double x, double y, double reach) {
   double ax = fabs(x), ay = fabs(y);
-  // The corner triangle's side: x + y = 0.75 + 0.65 - 0.07.
-  double corner = VS_FIELD_HALF_LENGTH_M + VS_FIELD_HALF_WIDTH_M - VS_CORNER_M;
-  return ax > VS_FIELD_HALF_LENGTH_M - reach || ay > VS_FIELD_HALF_WIDTH_M - reach || ax + ay > corner - 1.4143 * reach;
+  // The corner triangle's side, in 3 against 3: x + y = 0.75 + 0.65 - 0.07.
+  double corner = field->half_length_m + field->half_width_m - field->corner_m;
+  return ax > field->half_length_m - reach || ay > field->half_width_m - reach || ax + ay > corner - 1.4143 * reach;
 }
 
 const mjModel *vs_nearby_view(vs_sim *sim) {
-  double x[BODIES], y[BODIES], reach[BODIES];
-  uint32_t bits = 0;
-  for (int i = 0; i < BODIES; i++) {
-    const double *place = sim->data->qpos + (i == BALL ? sim->model->ball_qpos : sim->model->robot[i].qpos);
+  const vs_model *model = sim->model;
+  const int ball = model->robots;
+  double x[BODIES_MOST], y[BODIES_MOST], reach[BODIES_MOST];
+  near_bits bits = {ALWAYS, 0};
+  for (int i = 0; i <= ball; i++) {
+    const double *place = sim->data->qpos + (i == ball ? model->ball_qpos : model->robot[i].qpos);
     x[i] = place[0];
     y[i] = place[1];
-    reach[i] = i == BALL ? BALL_REACH_M : ROBOT_REACH_M;
-    if (near_wall(x[i], y[i], reach[i]) && (i == BALL || !beside(x[i], y[i]))) bits |= UINT32_C(1) << i;
+    reach[i] = i == ball ? BALL_REACH_M : ROBOT_REACH_M;
+    if (near_wall(model->field, x[i], y[i], reach[i]) && (i == ball || !beside(model->field, x[i], y[i])))
+      bits.walls |= UINT32_C(1) << i;
     for (int k = 0; k < i; k++) {
       double dx = x[i] - x[k], dy = y[i] - y[k], both = reach[i] + reach[k];
-      if (dx * dx + dy * dy < both * both) bits |= UINT32_C(1) << couple_bit(i, k);
+      if (dx * dx + dy * dy < both * both) bits.couples |= UINT64_C(1) << couple_bit(i, k);
     }
   }
-  bits |= UINT32_C(1) << 31; // pairs that are always near have it, no other
-  if (sim->test_all_pairs) bits = EVERYTHING;
-  if (bits != sim->view_bits) select_pairs(sim, bits);
+  if (sim->test_all_pairs) bits = everything;
+  if (bits.walls != sim->view_bits.walls || bits.couples != sim->view_bits.couples) select_pairs(sim, bits);
   return &sim->view;
 }

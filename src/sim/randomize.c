@@ -7,11 +7,11 @@
 #include "mujoco_call.h"
 #include "vsss/geom.h"
 
-static bool nominal(const vs_sim_params *p) {
+static bool nominal(const vs_model *model, const vs_sim_params *p) {
   if (p->floor_friction_scale != 1 || p->robot_mass_scale != 1 || p->ball_mass_scale != 1) return false;
   if (p->ball_rolling_scale != 1 || p->ball_restitution != NOMINAL_RESTITUTION || p->servo_scale != 1) return false;
-  for (int i = 0; i < ROBOTS; i++) {
-    int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE;
+  for (int i = 0; i < model->robots; i++) {
+    int team = team_of(model, i), index = index_in_team(model, i);
     const double *com = p->com_offset_m[team][index];
     if (p->wheel_radius_scale[team][index] != 1 || p->track_scale[team][index] != 1) return false;
     if (com[0] != 0 || com[1] != 0) return false;
@@ -77,7 +77,7 @@ static void set_robot(vs_sim *sim, int i) {
   const mjModel *from = sim->model->mj;
   const vs_sim_params *p = &sim->params;
   const robot_address *address = &sim->model->robot[i];
-  int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE, body = address->body;
+  int team = team_of(sim->model, i), index = index_in_team(sim->model, i), body = address->body;
   scale_body(sim->own, from, body, p->robot_mass_scale);
   if (sim->model->drive == VS_DRIVE_PLANAR) return; // drive.c reads the rest from params
   for (int axis = 0; axis < 2; axis++) {
@@ -98,11 +98,11 @@ static void copy_model(void *context) {
 
 bool vs_randomize_apply(vs_sim *sim) {
   sim->mj = sim->model->mj;
-  if (nominal(&sim->params)) return true;
+  if (nominal(sim->model, &sim->params)) return true;
   if (!sim->own && (vs_mujoco_call(copy_model, sim, NULL) != VS_OK || !sim->own)) return false;
   sim->mj = sim->own;
   scale_body(sim->own, sim->model->mj, sim->model->ball_body, sim->params.ball_mass_scale);
   set_contacts(sim->own, sim->model->mj, &sim->params);
-  for (int i = 0; i < ROBOTS; i++) set_robot(sim, i);
+  for (int i = 0; i < sim->model->robots; i++) set_robot(sim, i);
   return true;
 }

@@ -96,18 +96,19 @@ vs_status vs_realism_parse(const char *name_for_errors, const char *text, vs_rea
 
 static double draw(vs_rng *rng, vs_range range) { return vs_rng_range(rng, range.low, range.high); }
 
+static void draw_robot(const vs_realism *r, vs_rng *rng, int team, int index, vs_sim_params *params) {
+  for (int k = 0; k < 2; k++) {
+    params->wheel_gain[team][index][k] = draw(rng, r->wheel_gain);
+    params->com_offset_m[team][index][k] = draw(rng, r->com_offset_m);
+  }
+  params->wheel_radius_scale[team][index] = draw(rng, r->wheel_radius_scale);
+  params->track_scale[team][index] = draw(rng, r->track_scale);
+}
+
 vs_sim_params vs_realism_draw(const vs_realism *r, uint64_t seed) {
   vs_rng rng = vs_rng_make(seed, 1);
   vs_sim_params params = vs_sim_params_default();
-  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
-    int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE;
-    for (int k = 0; k < 2; k++) {
-      params.wheel_gain[team][index][k] = draw(&rng, r->wheel_gain);
-      params.com_offset_m[team][index][k] = draw(&rng, r->com_offset_m);
-    }
-    params.wheel_radius_scale[team][index] = draw(&rng, r->wheel_radius_scale);
-    params.track_scale[team][index] = draw(&rng, r->track_scale);
-  }
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) draw_robot(r, &rng, i / VS_TEAM_SIZE, i % VS_TEAM_SIZE, &params);
   params.wheel_limit_scale = draw(&rng, r->wheel_limit_scale);
   params.motor_tau_s = draw(&rng, r->motor_tau_s);
   params.dead_zone_radps = draw(&rng, r->dead_zone_radps);
@@ -119,5 +120,8 @@ vs_sim_params vs_realism_draw(const vs_realism *r, uint64_t seed) {
   params.push_per_s = draw(&rng, r->push_per_s);
   params.push_mps = draw(&rng, r->push_mps);
   params.push_seed = vs_seed_mix(seed, 2);
+  // The robots of larger teams last: what a seed means to 3 against 3 stays.
+  for (int i = VS_TEAM_SIZE; i < VS_TEAM_MOST; i++)
+    for (int t = 0; t < VS_TEAMS; t++) draw_robot(r, &rng, t, i, &params);
   return params;
 }

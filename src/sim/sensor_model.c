@@ -23,19 +23,25 @@ void vs_sensors_never(const vs_realism *realism, uint64_t seed, bool never[VS_TE
   memset(never, 0, VS_TEAMS * sizeof never[0]);
   if (realism->never_seen_share <= 0 || is_ideal(realism, seed)) return;
   vs_rng rng = vs_rng_make(seed, 4);
-  for (int team = 0; team < VS_TEAMS; team++)
-    for (int object = 0; object < VS_SENSOR_OBJECTS; object++) {
-      bool own = object < VS_TEAMS * VS_TEAM_SIZE && object / VS_TEAM_SIZE == team;
-      bool is_never = vs_rng_uniform(&rng) < realism->never_seen_share;
-      never[team][object] = is_never && !own;
+  const int ball = VS_SENSOR_OBJECTS - 1;
+  for (int team = 0; team < VS_TEAMS; team++) {
+    for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
+      bool own = i / VS_TEAM_SIZE == team, is_never = vs_rng_uniform(&rng) < realism->never_seen_share;
+      never[team][i / VS_TEAM_SIZE * VS_TEAM_MOST + i % VS_TEAM_SIZE] = is_never && !own;
     }
+    never[team][ball] = vs_rng_uniform(&rng) < realism->never_seen_share;
+  }
+  // The robots of larger teams last: what a seed means to 3 against 3 stays.
+  for (int team = 0; team < VS_TEAMS; team++)
+    for (int i = VS_TEAM_SIZE; i < VS_TEAM_MOST; i++)
+      never[team][!team * VS_TEAM_MOST + i] = vs_rng_uniform(&rng) < realism->never_seen_share;
 }
 
 void vs_sensors_hide(const bool never[VS_SENSOR_OBJECTS], vs_world *measured) {
-  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
-    int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE;
-    if (never[i]) measured->robot[team][index] = (vs_robot){.pose = vs_world_parked((vs_team)team, index)};
-  }
+  for (int team = 0; team < VS_TEAMS; team++)
+    for (int i = 0, n = vs_team_size(measured); i < n; i++)
+      if (never[team * VS_TEAM_MOST + i])
+        measured->robot[team][i] = (vs_robot){.pose = vs_world_parked(measured->division, (vs_team)team, i)};
   if (never[VS_SENSOR_OBJECTS - 1]) measured->ball = (vs_ball){.z_m = VS_BALL_RADIUS_M};
 }
 
@@ -95,11 +101,10 @@ static void measure_place(vs_sensors *s, double *x_m, double *y_m) {
 }
 
 // Whether this frame's detection of an object at (x, y) is lost; counts what is left of the burst.
-static bool lost(vs_sensors *s, int object, double x_m, double y_m) {
+static bool lost(vs_sensors *s, const vs_pitch *field, int object, double x_m, double y_m) {
   if (s->detection_loss <= 0) return false;
   if (s->lost_frames[object] == 0) {
-    bool near_wall =
-        fabs(x_m) > VS_FIELD_HALF_LENGTH_M - NEAR_WALL_M || fabs(y_m) > VS_FIELD_HALF_WIDTH_M - NEAR_WALL_M;
+    bool near_wall = fabs(x_m) > field->half_length_m - NEAR_WALL_M || fabs(y_m) > field->half_width_m - NEAR_WALL_M;
     if (vs_rng_uniform(&s->rng) >= s->detection_loss * (near_wall ? 2 : 1)) return false;
     s->lost_frames[object] = burst(&s->rng, s->detection_burst_frames);
   }
@@ -114,8 +119,8 @@ static int64_t since_us(const vs_sensors *s, int object) {
 
 void vs_sensors_restart(vs_sensors *s) {
   memset(s->filtering, 0, sizeof s->filtering);
-  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
-    vs_robot *last = &s->last.robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_MOST; i++) {
+    vs_robot *last = &s->last.robot[i / VS_TEAM_MOST][i % VS_TEAM_MOST];
     last->vx_mps = last->vy_mps = last->omega_radps = 0;
   }
   s->last.ball.vx_mps = s->last.ball.vy_mps = 0;
@@ -141,16 +146,16 @@ static void filter(vs_sensors *s, int object, const double value[3], double acce
   s->held_frames[object] = 0;
 }
 
-static void measure_robot(vs_sensors *s, int team, int index, vs_robot *robot) {
-  int object = team * VS_TEAM_SIZE + index;
-  bool is_lost = lost(s, object, robot->pose.x_m, robot->pose.y_m);
+static void measure_robot(vs_sensors *s, const vs_pitch *field, int team, int index, vs_robot *robot) {
+  int object = team * VS_TEAM_MOST + index;
+  bool is_lost = lost(s, field, object, robot->pose.x_m, robot->pose.y_m);
   measure_place(s, &robot->pose.x_m, &robot->pose.y_m);
   double heading = robot->pose.theta_rad + s->bias_heading_rad + error(s, VS_NOISE_HEADING_RAD);
   if (is_lost) {
     s->held_frames[object]++;
     vs_unseen_robot(&s->last.robot[team][index], 0, since_us(s, object), robot);
     robot->pose.theta_rad = vs_wrap_rad(robot->pose.theta_rad);
-    if (!s->ever[object]) robot->pose = vs_world_parked((vs_team)team, index);
+    if (!s->ever[object]) robot->pose = vs_world_parked(s->last.division, (vs_team)team, index);
     return;
   }
   robot->left_radps = robot->right_radps = 0;
@@ -164,9 +169,9 @@ static void measure_robot(vs_sensors *s, int team, int index, vs_robot *robot) {
   s->last.robot[team][index] = *robot;
 }
 
-static void measure_ball(vs_sensors *s, vs_ball *ball) {
+static void measure_ball(vs_sensors *s, const vs_pitch *field, vs_ball *ball) {
   enum { BALL = VS_SENSOR_OBJECTS - 1 };
-  bool is_lost = lost(s, BALL, ball->x_m, ball->y_m);
+  bool is_lost = lost(s, field, BALL, ball->x_m, ball->y_m);
   measure_place(s, &ball->x_m, &ball->y_m);
   if (is_lost) {
     s->held_frames[BALL]++;
@@ -183,10 +188,12 @@ static void measure_ball(vs_sensors *s, vs_ball *ball) {
 }
 
 void vs_sensors_measure(vs_sensors *s, const vs_world *truth, vs_world *measured) {
+  const vs_pitch *field = vs_pitch_of(truth->division);
   vs_world world = *truth;
-  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++)
-    measure_robot(s, i / VS_TEAM_SIZE, i % VS_TEAM_SIZE, &world.robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE]);
-  measure_ball(s, &world.ball);
+  s->last.division = truth->division;
+  for (int t = 0; t < VS_TEAMS; t++)
+    for (int i = 0; i < field->team_size; i++) measure_robot(s, field, t, i, &world.robot[t][i]);
+  measure_ball(s, field, &world.ball);
   *measured = world;
 }
 
@@ -201,12 +208,13 @@ static vs_wheels mix(vs_wheels a, vs_wheels b, double share_of_b) {
                      a.right_radps + share_of_b * (b.right_radps - a.right_radps)};
 }
 
-void vs_sensors_command(vs_sensors *s, const vs_wheels in[VS_TEAMS][VS_TEAM_SIZE],
-                        vs_wheels out[VS_TEAMS][VS_TEAM_SIZE]) {
+void vs_sensors_command(vs_sensors *s, const vs_wheels in[VS_TEAMS][VS_TEAM_MOST],
+                        vs_wheels out[VS_TEAMS][VS_TEAM_MOST]) {
+  const int team_size = vs_team_size(&s->last);
   memmove(s->queue[1], s->queue[0], sizeof s->queue - sizeof s->queue[0]);
   memcpy(s->queue[0], in, sizeof s->queue[0]);
-  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++)
-    if (out_of_sight(s, i)) s->queue[0][i / VS_TEAM_SIZE][i % VS_TEAM_SIZE] = (vs_wheels){0, 0};
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_MOST; i++)
+    if (out_of_sight(s, i)) s->queue[0][i / VS_TEAM_MOST][i % VS_TEAM_MOST] = (vs_wheels){0, 0};
   double latency_s = s->latency_s;
   if (s->latency_jitter_s > 0) latency_s += vs_rng_range(&s->rng, -s->latency_jitter_s, s->latency_jitter_s);
   double frames = vs_clamp(latency_s * FRAMES_PER_S, 0, VS_SENSOR_DELAY_FRAMES - 1.001);
@@ -217,7 +225,7 @@ void vs_sensors_command(vs_sensors *s, const vs_wheels in[VS_TEAMS][VS_TEAM_SIZE
     }
     bool arrives = s->radio_lost_frames[team] == 0;
     if (!arrives) s->radio_lost_frames[team]--;
-    for (int i = 0; i < VS_TEAM_SIZE && arrives; i++) {
+    for (int i = 0; i < team_size && arrives; i++) {
       s->applied[team][i] = mix(s->queue[whole][team][i], s->queue[whole + 1][team][i], frames - whole);
     }
   }

@@ -17,8 +17,8 @@ vs_sim_params vs_sim_params_default(void) {
                           .ball_rolling_scale = 1,
                           .ball_restitution = NOMINAL_RESTITUTION,
                           .servo_scale = 1};
-  for (int i = 0; i < ROBOTS; i++) {
-    int team = i / VS_TEAM_SIZE, index = i % VS_TEAM_SIZE;
+  for (int i = 0; i < ROBOTS_MOST; i++) {
+    int team = i / VS_TEAM_MOST, index = i % VS_TEAM_MOST;
     params.wheel_gain[team][index][LEFT] = params.wheel_gain[team][index][RIGHT] = 1;
     params.wheel_radius_scale[team][index] = params.track_scale[team][index] = 1;
   }
@@ -66,10 +66,18 @@ static void stop_everything(vs_sim *sim) {
   memset(sim->wheel, 0, sizeof sim->wheel);
 }
 
-// Where a reset leaves the pieces; the referee places them by its own rules.
-static const vs_world kick_off = {
-    .robot = {{{.pose = {-0.65, 0, 0}}, {.pose = {-0.375, 0.2, 0}}, {.pose = {-0.375, -0.2, 0}}},
-              {{.pose = {0.65, 0, VS_PI}}, {.pose = {0.375, -0.2, VS_PI}}, {.pose = {0.375, 0.2, VS_PI}}}}};
+// Where a reset leaves the pieces; the referee places them by its own rules. On any field, those of 3 against 3 first.
+static void place_at_first(vs_sim *sim) {
+  static const vs_pose blue[VS_TEAM_MOST] = {
+      {-0.65, 0, 0}, {-0.375, 0.2, 0}, {-0.375, -0.2, 0}, {-0.375, 0.4, 0}, {-0.375, -0.4, 0}};
+  vs_world first = {.division = sim->model->division};
+  for (int i = 0; i < sim->model->field->team_size; i++) {
+    vs_pose yellow = {-blue[i].x_m, -blue[i].y_m, VS_PI};
+    first.robot[VS_BLUE][i].pose = blue[i];
+    first.robot[VS_YELLOW][i].pose = yellow;
+  }
+  vs_sim_place(sim, &first);
+}
 
 void vs_sim_reset(vs_sim *sim, const vs_sim_params *params) {
   sim->params = params ? *params : vs_sim_params_default();
@@ -80,7 +88,7 @@ void vs_sim_reset(vs_sim *sim, const vs_sim_params *params) {
   vs_nearby_reset(sim);
   sim->data->time = 0;
   sim->frame = 0;
-  vs_sim_place(sim, &kick_off);
+  place_at_first(sim);
 }
 
 // How far a standing robot's wheels sink into MuJoCo's soft floor: placed there it is at rest from the first step on.
@@ -104,11 +112,11 @@ static void set_robot(vs_sim *sim, int robot, vs_pose pose) {
 }
 
 void vs_sim_put_beside(vs_sim *sim, vs_team team, int robot) {
-  int i = (int)team * VS_TEAM_SIZE + robot;
+  int i = (int)team * sim->model->field->team_size + robot;
   bool contact = sim->model->drive == VS_DRIVE_CONTACT;
   const robot_address *address = &sim->model->robot[i];
   int first = address->qvel, n = contact ? 6 : 3;
-  set_robot(sim, i, vs_world_beside(team, robot));
+  set_robot(sim, i, vs_world_beside(sim->model->division, team, robot));
   memset(sim->data->qvel + first, 0, sizeof(double) * (size_t)n);
   memset(sim->data->qacc_warmstart + first, 0, sizeof(double) * (size_t)n);
   for (int side = 0; side < SIDES && contact; side++) sim->data->qvel[address->wheel_qvel[side]] = 0;
@@ -118,7 +126,8 @@ void vs_sim_put_beside(vs_sim *sim, vs_team team, int robot) {
 void vs_sim_place(vs_sim *sim, const vs_world *world) {
   stop_everything(sim);
   memcpy(sim->data->qpos, sim->mj->qpos0, sizeof(double) * sim->mj->nq); // the wheels' angles too
-  for (int i = 0; i < ROBOTS; i++) set_robot(sim, i, world->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE].pose);
+  for (int i = 0; i < sim->model->robots; i++)
+    set_robot(sim, i, world->robot[team_of(sim->model, i)][index_in_team(sim->model, i)].pose);
   double *ball = sim->data->qpos + sim->model->ball_qpos;
   const double contact[7] = {world->ball.x_m, world->ball.y_m, VS_BALL_RADIUS_M, 1, 0, 0, 0};
   const double planar[6] = {world->ball.x_m, world->ball.y_m, 1, 0, 0, 0};
@@ -145,7 +154,7 @@ static vs_status check_warnings(const vs_sim *sim, vs_error *err) {
 
 typedef struct frame_work {
   vs_sim *sim;
-  double target[ROBOTS][SIDES];
+  double target[ROBOTS_MOST][SIDES];
 } frame_work;
 
 static void step_frame(void *context) {
@@ -160,7 +169,7 @@ static void step_frame(void *context) {
 // Shoves: as if something had bumped into a robot between two frames.
 static void shove(vs_sim *sim) {
   if (sim->params.push_per_s <= 0) return;
-  for (int i = 0; i < ROBOTS; i++) {
+  for (int i = 0; i < sim->model->robots; i++) {
     if (vs_rng_uniform(&sim->push_rng) >= sim->params.push_per_s / sim->model->frame_hz) continue;
     double *v = sim->data->qvel + sim->model->robot[i].qvel;
     v[0] += vs_rng_range(&sim->push_rng, -sim->params.push_mps, sim->params.push_mps);
@@ -168,18 +177,18 @@ static void shove(vs_sim *sim) {
   }
 }
 
-vs_status vs_sim_frame(vs_sim *sim, const vs_wheels command[VS_TEAMS][VS_TEAM_SIZE], vs_error *err) {
+vs_status vs_sim_frame(vs_sim *sim, const vs_wheels command[VS_TEAMS][VS_TEAM_MOST], vs_error *err) {
   if (sim->out_of_memory) return vs_fail(err, VS_FAIL, "out of memory for this episode's randomised model");
   frame_work work = {.sim = sim};
-  for (int i = 0; i < ROBOTS; i++) {
-    vs_wheels wheels = command[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+  for (int i = 0; i < sim->model->robots; i++) {
+    int team = team_of(sim->model, i), index = index_in_team(sim->model, i);
+    vs_wheels wheels = command[team][index];
     if (!isfinite(wheels.left_radps) || !isfinite(wheels.right_radps)) {
       return vs_fail(err, VS_FAIL, "wheel command of %s robot %d is not a number (%g, %g rad/s): mend its player",
-                     vs_team_name((vs_team)(i / VS_TEAM_SIZE)), i % VS_TEAM_SIZE, wheels.left_radps,
-                     wheels.right_radps);
+                     vs_team_name((vs_team)team), index, wheels.left_radps, wheels.right_radps);
     }
-    work.target[i][LEFT] = vs_drive_target(&sim->params, i, LEFT, wheels.left_radps);
-    work.target[i][RIGHT] = vs_drive_target(&sim->params, i, RIGHT, wheels.right_radps);
+    work.target[i][LEFT] = vs_drive_target(&sim->params, team, index, LEFT, wheels.left_radps);
+    work.target[i][RIGHT] = vs_drive_target(&sim->params, team, index, RIGHT, wheels.right_radps);
   }
   shove(sim);
   vs_status status = vs_mujoco_call(step_frame, &work, err);
@@ -213,8 +222,12 @@ static void read_planar_robot(const vs_sim *sim, const robot_address *address, c
 void vs_sim_world(const vs_sim *sim, vs_world *out) {
   out->time_us = (int64_t)sim->frame * 1000000 / sim->model->frame_hz;
   out->seq = sim->frame;
-  for (int i = 0; i < ROBOTS; i++) {
-    vs_robot *robot = &out->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+  out->division = sim->model->division;
+  int n = sim->model->field->team_size;
+  for (int t = 0; t < VS_TEAMS && n < VS_TEAM_MOST; t++)
+    memset(&out->robot[t][n], 0, sizeof(vs_robot) * (size_t)(VS_TEAM_MOST - n));
+  for (int i = 0; i < sim->model->robots; i++) {
+    vs_robot *robot = &out->robot[team_of(sim->model, i)][index_in_team(sim->model, i)];
     if (sim->model->drive == VS_DRIVE_CONTACT) {
       read_contact_robot(sim, &sim->model->robot[i], robot);
     } else {

@@ -7,8 +7,8 @@
 #include "vsss/rng.h"
 #include "vsss/sim.h"
 
-#define ROBOTS     (VS_TEAMS * VS_TEAM_SIZE) // numbered team * VS_TEAM_SIZE + index
-#define PAIRS_MOST 256
+#define ROBOTS_MOST (VS_TEAMS * VS_TEAM_MOST)
+#define PAIRS_MOST  256
 enum { LEFT, RIGHT, SIDES };
 
 // Addresses into qpos, qvel and ctrl, looked up by name once.
@@ -19,14 +19,26 @@ typedef struct robot_address {
   int servo[SIDES];      // contact only
 } robot_address;
 
+// nearby.c: sets of what is near: one bit per body for "near a wall", one per couple of bodies for "near each other".
+typedef struct near_bits {
+  uint32_t walls;
+  uint64_t couples;
+} near_bits;
+
 struct vs_model {
   mjModel *mj;
   vs_drive drive;
   int substeps, frame_hz;
-  robot_address robot[ROBOTS];
+  vs_division division;
+  const vs_pitch *field; // of the division
+  int robots;            // of both teams, numbered team * team_size + index
+  robot_address robot[ROBOTS_MOST];
   int ball_body, ball_qpos, ball_qvel;
-  uint32_t pair_bits[PAIRS_MOST]; // nearby.c: what must be near for a contact pair to be worth a test
+  near_bits pair_bits[PAIRS_MOST]; // what must be near for a contact pair to be worth a test
 };
+
+static inline int team_of(const vs_model *model, int robot) { return robot / model->field->team_size; }
+static inline int index_in_team(const vs_model *model, int robot) { return robot % model->field->team_size; }
 
 // The planar drive's wheels and what both drives remember of the commands. Plain data.
 typedef struct wheel_state {
@@ -41,7 +53,7 @@ struct vs_sim {
   mjModel *own;         // NULL until first needed
   mjModel view;         // mj with only the contact pairs that are near in this step; shares all other arrays with mj
   double *view_numbers; // its pairs
-  uint32_t view_bits;
+  near_bits view_bits;
   bool test_all_pairs; // for the test that compares
   mjData *data;
   vs_sim_params params;
@@ -49,7 +61,7 @@ struct vs_sim {
   uint32_t frame;
   vs_rng push_rng;
   bool out_of_memory; // of the last reset
-  wheel_state wheel[ROBOTS][SIDES];
+  wheel_state wheel[ROBOTS_MOST][SIDES];
 };
 
 // Of the contact laws ball_wall in models/field.xml; ball_robot's is 2/3 of it.

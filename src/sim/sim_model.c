@@ -1,4 +1,4 @@
-// Loads the MJCF, finds its parts by name and checks them against field.h.
+// Loads the MJCF, finds its parts by name and checks them against field.h and division.h.
 #include "drive.h"
 
 #include <math.h>
@@ -120,7 +120,7 @@ static vs_status bind_robot(vs_model *model, const char *path, int index, vs_err
   const mjModel *mj = model->mj;
   robot_address *robot = &model->robot[index];
   char name[32], joint[40];
-  snprintf(name, sizeof name, "%s%d", vs_team_name((vs_team)(index / VS_TEAM_SIZE)), index % VS_TEAM_SIZE);
+  snprintf(name, sizeof name, "%s%d", vs_team_name((vs_team)team_of(model, index)), index_in_team(model, index));
   TRY(find(mj, path, mjOBJ_BODY, "body", name, &robot->body, err));
   if (model->drive == VS_DRIVE_CONTACT) {
     TRY(find_joint(mj, path, name, mjJNT_FREE, &robot->qpos, &robot->qvel, err));
@@ -145,16 +145,16 @@ static vs_status bind_robot(vs_model *model, const char *path, int index, vs_err
 }
 
 // The inner face of a wall plane, and the corner of the blocks beside the goal mouths.
-static vs_status check_field(const mjModel *mj, const char *path, vs_error *err) {
-  const double goal_end = VS_FIELD_HALF_LENGTH_M + VS_GOAL_DEPTH_M;
-  const double corner_x = VS_FIELD_HALF_LENGTH_M - VS_CORNER_M / 2, corner_y = VS_FIELD_HALF_WIDTH_M - VS_CORNER_M / 2;
-  const double end_y = (VS_FIELD_HALF_WIDTH_M + VS_GOAL_HALF_WIDTH_M) / 2;
+static vs_status check_field(const mjModel *mj, const vs_pitch *field, const char *path, vs_error *err) {
+  const double goal_end = field->half_length_m + field->goal_depth_m, corner = field->corner_m / 2;
+  const double corner_x = field->half_length_m - corner, corner_y = field->half_width_m - corner;
+  const double end_y = (field->half_width_m + field->goal_half_width_m) / 2;
   const struct {
     const char *name;
     double x, y;
   } wall[] = {
-      {"wall_left", 0, VS_FIELD_HALF_WIDTH_M},
-      {"wall_right", 0, -VS_FIELD_HALF_WIDTH_M},
+      {"wall_left", 0, field->half_width_m},
+      {"wall_right", 0, -field->half_width_m},
       {"goal_blue", -goal_end, 0},
       {"goal_yellow", goal_end, 0},
       {"corner_1", corner_x, corner_y},
@@ -173,8 +173,8 @@ static vs_status check_field(const mjModel *mj, const char *path, vs_error *err)
     TRY(expect(path, wall[i].name, "y", mj->geom_pos[3 * geom + 1], wall[i].y, 1e-9, err));
     if (mj->geom_type[geom] != mjGEOM_BOX) continue;
     const double *half = mj->geom_size + 3 * geom;
-    TRY(expect(path, wall[i].name, "half depth", half[0], VS_GOAL_DEPTH_M, 1e-9, err));
-    TRY(expect(path, wall[i].name, "half width", half[1], (VS_FIELD_HALF_WIDTH_M - VS_GOAL_HALF_WIDTH_M) / 2, 1e-9,
+    TRY(expect(path, wall[i].name, "half depth", half[0], field->goal_depth_m, 1e-9, err));
+    TRY(expect(path, wall[i].name, "half width", half[1], (field->half_width_m - field->goal_half_width_m) / 2, 1e-9,
                err));
   }
   return VS_OK;
@@ -202,7 +202,7 @@ static vs_status check_floor_contacts(const mjModel *mj, const char *path, vs_er
 
 static vs_status bind(vs_model *model, const char *path, vs_error *err) {
   const mjModel *mj = model->mj;
-  TRY(check_field(mj, path, err));
+  TRY(check_field(mj, model->field, path, err));
   int geom;
   TRY(find(mj, path, mjOBJ_GEOM, "geom", "ball", &geom, err));
   TRY(find(mj, path, mjOBJ_BODY, "body", "ball", &model->ball_body, err));
@@ -216,7 +216,7 @@ static vs_status bind(vs_model *model, const char *path, vs_error *err) {
   }
   TRY(expect(path, "ball", "radius", mj->geom_size[3 * geom], VS_BALL_RADIUS_M, 1e-9, err));
   TRY(expect(path, "ball", "mass", mj->body_mass[model->ball_body], VS_BALL_MASS_KG, 1e-9, err));
-  for (int i = 0; i < ROBOTS; i++) TRY(bind_robot(model, path, i, err));
+  for (int i = 0; i < model->robots; i++) TRY(bind_robot(model, path, i, err));
   if (mj->npair > PAIRS_MOST)
     return vs_fail(err, VS_FAIL, "%s: %d contact pairs, at most %d", path, mj->npair, PAIRS_MOST);
   return VS_OK;
@@ -227,7 +227,8 @@ vs_status vs_model_load(const vs_model_def *def, vs_model **out, vs_error *err) 
   if (def->path) {
     snprintf(path, sizeof path, "%s", def->path);
   } else {
-    snprintf(relative, sizeof relative, "models/vsss_%s.xml", vs_drive_name(def->drive));
+    snprintf(relative, sizeof relative, "models/vsss_%s%s%s.xml", vs_drive_name(def->drive),
+             def->division == VS_3V3 ? "" : "_", def->division == VS_3V3 ? "" : vs_pitch_of(def->division)->name);
     TRY(vs_path_find(relative, path, sizeof path, err));
   }
   if (def->substeps_per_frame < 0 || def->substeps_per_frame > 1000) {
@@ -240,6 +241,9 @@ vs_status vs_model_load(const vs_model_def *def, vs_model **out, vs_error *err) 
   vs_model *model = calloc(1, sizeof *model);
   if (!model) return vs_fail(err, VS_FAIL, "out of memory");
   model->drive = def->drive;
+  model->division = def->division;
+  model->field = vs_pitch_of(def->division);
+  model->robots = VS_TEAMS * model->field->team_size;
   model->frame_hz = def->frame_hz ? def->frame_hz : VS_CAMERA_HZ;
   model->substeps = def->substeps_per_frame;
   if (!model->substeps) model->substeps = def->drive == VS_DRIVE_PLANAR ? PLANAR_SUBSTEPS : CONTACT_SUBSTEPS;
@@ -265,4 +269,5 @@ double vs_model_step_s(const vs_model *model) { return model->mj->opt.timestep; 
 int vs_model_frame_hz(const vs_model *model) { return model->frame_hz; }
 int vs_model_substeps(const vs_model *model) { return model->substeps; }
 vs_drive vs_model_drive(const vs_model *model) { return model->drive; }
+vs_division vs_model_division(const vs_model *model) { return model->division; }
 const void *vs_model_mjmodel(const vs_model *model) { return model->mj; }

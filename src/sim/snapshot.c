@@ -10,7 +10,7 @@ typedef struct snapshot {
   vs_sim_params params;
   uint32_t frame;
   vs_rng push_rng;
-  wheel_state wheel[ROBOTS][SIDES];
+  wheel_state wheel[ROBOTS_MOST][SIDES];
   double time;
 } snapshot; // followed by qpos, qvel, qacc_warmstart, qfrc_constraint
 

@@ -260,8 +260,8 @@ void vs_track_world(const vs_tracker *t, int64_t time_us, vs_world *out) {
     own->pose.theta_rad = vs_wrap_rad(own->pose.theta_rad + (turned ? VS_PI : 0.0));
     robot_at(&t->robot[VS_ADVERSARY][i], time_us, turn, other);
     other->pose.theta_rad = heading_shown(&t->def) ? vs_wrap_rad(other->pose.theta_rad + (turned ? VS_PI : 0.0)) : 0.0;
-    if (!t->robot[VS_OWN][i].ever) own->pose = vs_world_parked(t->def.team, i);
-    if (!t->robot[VS_ADVERSARY][i].ever) other->pose = vs_world_parked((vs_team)(1 - t->def.team), i);
+    if (!t->robot[VS_OWN][i].ever) own->pose = vs_world_parked(VS_3V3, t->def.team, i);
+    if (!t->robot[VS_ADVERSARY][i].ever) other->pose = vs_world_parked(VS_3V3, (vs_team)(1 - t->def.team), i);
   }
   vs_robot ball;
   robot_at(&t->ball, time_us, turn, &ball);

@@ -21,15 +21,17 @@ static vs_robot robot_rotate_pi(const vs_robot *robot) {
   return turned;
 }
 
-vs_pose vs_world_parked(vs_team team, int robot) {
-  static const double y_m[VS_TEAM_SIZE] = {0.60, -0.60, 0.48};
-  vs_pose blue = {-0.70, y_m[robot], 0};
+vs_pose vs_world_parked(vs_division division, vs_team team, int robot) {
+  static const double from_side_m[VS_TEAM_MOST] = {0.05, 0.05, 0.17, 0.17, 0.29};
+  const vs_pitch *field = vs_pitch_of(division);
+  double y_m = field->half_width_m - from_side_m[robot];
+  vs_pose blue = {-(field->half_length_m - 0.05), robot == 1 || robot == 3 ? -y_m : y_m, 0};
   return team == VS_BLUE ? blue : vs_pose_rotate_pi(blue);
 }
 
-vs_pose vs_world_beside(vs_team team, int robot) {
+vs_pose vs_world_beside(vs_division division, vs_team team, int robot) {
   double x_m = 0.2 * (robot + 1);
-  return (vs_pose){team == VS_BLUE ? -x_m : x_m, VS_FIELD_HALF_WIDTH_M + VS_BESIDE_M + 0.05, 0};
+  return (vs_pose){team == VS_BLUE ? -x_m : x_m, vs_pitch_of(division)->half_width_m + VS_BESIDE_M + 0.05, 0};
 }
 
 void vs_world_for_team(const vs_world *absolute, vs_team team, vs_world *view) {
@@ -38,7 +40,7 @@ void vs_world_for_team(const vs_world *absolute, vs_team team, vs_world *view) {
     return;
   }
   vs_world turned = *absolute;
-  for (int i = 0; i < VS_TEAM_SIZE; i++) {
+  for (int i = 0, n = vs_team_size(absolute); i < n; i++) {
     turned.robot[VS_OWN][i] = robot_rotate_pi(&absolute->robot[VS_YELLOW][i]);
     turned.robot[VS_ADVERSARY][i] = robot_rotate_pi(&absolute->robot[VS_BLUE][i]);
   }
@@ -61,8 +63,8 @@ void vs_game_for_team(const vs_game *absolute, vs_team team, vs_game *view) {
   *view = seen;
 }
 
-static vs_status check_point(const char *what, int index, double x, double y, vs_error *err) {
-  if (fabs(x) <= VS_FIELD_HALF_LENGTH_M + 1.0 && fabs(y) <= VS_FIELD_HALF_WIDTH_M + 1.0) return VS_OK;
+static vs_status check_point(const vs_pitch *field, const char *what, int index, double x, double y, vs_error *err) {
+  if (fabs(x) <= field->half_length_m + 1.0 && fabs(y) <= field->half_width_m + 1.0) return VS_OK;
   return vs_fail(err, VS_FAIL, "%s %d at (%g, %g) m: not on the field", what, index, x, y);
 }
 
@@ -73,26 +75,27 @@ static vs_status check_numbers(const char *what, int index, const double *value,
 }
 
 vs_status vs_world_check(const vs_world *world, vs_error *err) {
+  const vs_pitch *field = vs_pitch_of(world->division);
   for (int t = 0; t < VS_TEAMS; t++) {
-    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    for (int i = 0; i < field->team_size; i++) {
       const vs_robot *r = &world->robot[t][i];
       const double value[] = {r->pose.theta_rad, r->vx_mps, r->vy_mps, r->omega_radps, r->left_radps, r->right_radps};
       char what[32];
       snprintf(what, sizeof what, "%s robot", vs_team_name((vs_team)t));
-      if (check_point(what, i, r->pose.x_m, r->pose.y_m, err) != VS_OK) return VS_FAIL;
+      if (check_point(field, what, i, r->pose.x_m, r->pose.y_m, err) != VS_OK) return VS_FAIL;
       if (check_numbers(what, i, value, sizeof value / sizeof *value, err) != VS_OK) return VS_FAIL;
     }
   }
   const vs_ball *b = &world->ball;
   const double value[] = {b->z_m, b->vx_mps, b->vy_mps, b->vz_mps};
-  if (check_point("ball", 0, b->x_m, b->y_m, err) != VS_OK) return VS_FAIL;
+  if (check_point(field, "ball", 0, b->x_m, b->y_m, err) != VS_OK) return VS_FAIL;
   return check_numbers("ball", 0, value, sizeof value / sizeof *value, err);
 }
 
 bool vs_world_ok(const vs_world *w) {
-  bool ok = vs_all_finite(&w->ball.x_m, 6) && vs_are_bools(&w->ball.valid, 1);
-  for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
-    const vs_robot *r = &w->robot[i / VS_TEAM_SIZE][i % VS_TEAM_SIZE];
+  bool ok = (unsigned)w->division < VS_DIVISIONS && vs_all_finite(&w->ball.x_m, 6) && vs_are_bools(&w->ball.valid, 1);
+  for (int i = 0; i < VS_TEAMS * VS_TEAM_MOST; i++) {
+    const vs_robot *r = &w->robot[i / VS_TEAM_MOST][i % VS_TEAM_MOST];
     ok = ok && vs_all_finite(&r->pose.x_m, 8) && vs_are_bools(&r->valid, 1);
   }
   return ok && llabs(w->time_us) < INT64_C(1) << 53;
@@ -107,8 +110,9 @@ uint64_t vs_hash_bytes(uint64_t hash, const void *data, unsigned long size) {
 uint64_t vs_world_hash(uint64_t hash, const vs_world *world) {
   hash = vs_hash_bytes(hash, &world->time_us, sizeof world->time_us);
   hash = vs_hash_bytes(hash, &world->seq, sizeof world->seq);
+  if (world->division != VS_3V3) hash = vs_hash_bytes(hash, &world->division, sizeof world->division);
   for (int t = 0; t < VS_TEAMS; t++) {
-    for (int i = 0; i < VS_TEAM_SIZE; i++) {
+    for (int i = 0, n = vs_team_size(world); i < n; i++) {
       const vs_robot *r = &world->robot[t][i];
       const double value[] = {r->pose.x_m,    r->pose.y_m,   r->pose.theta_rad, r->vx_mps,       r->vy_mps,
                               r->omega_radps, r->left_radps, r->right_radps,    (double)r->valid};

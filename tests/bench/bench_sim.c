@@ -27,7 +27,7 @@ static void open_sim(vs_drive drive, int substeps, vs_model **model, vs_sim **si
 static double median(double *values, int n) { return trace_quantile(values, n, 0.5); }
 
 // Random commands at 10 Hz, the hardest play for the solver: wheels slip and robots crash all the time.
-static void random_commands(vs_rng *rng, vs_wheels command[VS_TEAMS][VS_TEAM_SIZE]) {
+static void random_commands(vs_rng *rng, vs_wheels command[VS_TEAMS][VS_TEAM_MOST]) {
   for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
     double left = vs_rng_range(rng, -VS_WHEEL_LIMIT_RADPS, VS_WHEEL_LIMIT_RADPS);
     double right = vs_rng_range(rng, -VS_WHEEL_LIMIT_RADPS, VS_WHEEL_LIMIT_RADPS);
@@ -44,7 +44,7 @@ typedef struct tape {
 static double play(vs_sim *sim, uint64_t seed) {
   vs_error err = {0};
   vs_rng rng = vs_rng_make(seed, 0);
-  vs_wheels command[VS_TEAMS][VS_TEAM_SIZE];
+  vs_wheels command[VS_TEAMS][VS_TEAM_MOST];
   vs_sim_reset(sim, NULL);
   double start = seconds();
   for (int f = 0; f < FRAMES; f++) {

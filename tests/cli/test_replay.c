@@ -47,9 +47,9 @@ static int write_log(void **state) {
   add_event(bus, VS_EVENT_GOAL, VS_YELLOW, 12.5, 0, 1);
   add_event(bus, VS_EVENT_FREE_BALL, VS_BLUE, 63.04, 2, 1);
   vs_message m = {.channel = VS_CH_CMD};
-  m.as.cmd = (vs_msg_cmd){VS_BLUE, {{1, 2}, {3, 4}, {5, -6.5}}, false, 7, "emc:"};
+  m.as.cmd = (vs_msg_cmd){VS_BLUE, {{1, 2}, {3, 4}, {5, -6.5}}, false, 7, "emc:", VS_3V3};
   assert_ok(vs_bus_publish(bus, &m, err));
-  m.as.cmd = (vs_msg_cmd){VS_YELLOW, {{0, 0}}, true, -1, "onnx:\"odd\".onnx"};
+  m.as.cmd = (vs_msg_cmd){VS_YELLOW, {{0, 0}}, true, -1, "onnx:\"odd\".onnx", VS_3V3};
   assert_ok(vs_bus_publish(bus, &m, err));
   assert_ok(vs_bus_publish_raw(bus, "CAMERA_OF_OTHERS", (const uint8_t *)"abc", 3, err));
   add_event(bus, VS_EVENT_END, VS_BLUE, 120.0, 2, 1);

@@ -45,6 +45,22 @@ static void a_full_match_conforms(void **state) {
     fail_msg("%s", json);
 }
 
+static void a_match_of_five_against_five_conforms(void **state) {
+  (void)state;
+  conforms("five", offset + 50, "--sync --division 5v5 --seconds 30 --pause 0.5 --drive planar --answer 30");
+  const char *json = folder_file("five.json");
+  if (!strstr(json, "\"division\": \"5v5\"") || !strstr(json, "\"complete\": true") ||
+      !strstr(json, "\"garbage\": 0") || !strstr(json, "\"dropped_rows\": 0"))
+    fail_msg("%s", json);
+}
+
+static void a_learned_policy_is_refused_in_5v5_with_the_reason(void **state) {
+  (void)state;
+  char flags[256];
+  snprintf(flags, sizeof flags, "serve --division 5v5 --blue onnx: --ports +%d", offset + 60);
+  assert_refused(flags, 2, "three robots, not 5v5: use --division 3v3");
+}
+
 static void a_knockout_match_conforms(void **state) {
   (void)state;
   conforms("knockout", offset + 90, "--sync --knockout --seconds 10 --pause 0.2 --drive planar --answer 30");
@@ -215,6 +231,8 @@ int main(void) {
   offset = 100 + (int)(getpid() % 200) * 100;
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_full_match_conforms),
+      cmocka_unit_test(a_match_of_five_against_five_conforms),
+      cmocka_unit_test(a_learned_policy_is_refused_in_5v5_with_the_reason),
       cmocka_unit_test(a_knockout_match_conforms),
       cmocka_unit_test(a_key_gives_a_team_its_time_outs),
       cmocka_unit_test(free_play_conforms_in_both_dialects),

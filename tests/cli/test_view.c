@@ -74,6 +74,27 @@ static void a_log_is_served_as_a_page_and_its_frames(void **state) {
   stop(view);
 }
 
+// Of 5 against 5: the first frame holds ten robots, each "[1,x,y,heading,left,right]".
+static void a_log_of_five_against_five_shows_ten_robots(void **state) {
+  (void)state;
+  vsss_run run;
+  char command[256], flags[256];
+  snprintf(command, sizeof command,
+           "sim --division 5v5 --blue emc: --yellow inf: --seconds 2 --drive planar --lcm 'file://%s/five?mode=w'",
+           folder);
+  vsss(&run, command);
+  if (run.status != 0) fail_msg("%s", run.err);
+  snprintf(flags, sizeof flags, "'%s/five'", folder);
+  pid_t view = start(flags);
+  ask("GET /data.json HTTP/1.0\r\n\r\n", answer, sizeof answer);
+  stop(view);
+  const char *frame = strstr(answer, "\n["), *end = frame ? strchr(frame + 2, '\n') : NULL;
+  assert_non_null(end);
+  int robots = 0;
+  for (const char *c = frame + 2; c < end; c++) robots += c[0] == '[' && c[1] == '1' && c[2] == ',';
+  assert_int_equal(robots, 10);
+}
+
 static bool has_browser(char *name, size_t size) {
   FILE *f = popen("command -v chromium-headless-shell || command -v chromium", "r");
   bool found = fgets(name, (int)size, f) != NULL;
@@ -166,6 +187,7 @@ int main(void) {
   port = 20000 + (int)(getpid() % 10000);
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_log_is_served_as_a_page_and_its_frames),
+      cmocka_unit_test(a_log_of_five_against_five_shows_ten_robots),
       cmocka_unit_test(a_browser_shows_the_log_without_complaint),
       cmocka_unit_test(a_live_match_comes_over_the_websocket),
       cmocka_unit_test(what_cannot_be_shown_is_refused),

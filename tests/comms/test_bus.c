@@ -39,7 +39,9 @@ static void fill(vs_channel channel, vs_message *m) {
     m->as.world.asks_team = channel == VS_CH_STATE ? VS_YELLOW : -1;
     break;
   }
-  case VS_CH_CMD: m->as.cmd = (vs_msg_cmd){VS_YELLOW, {{1, 2}, {-3, 4}, {5, -6}}, true, 99, "emc:?pid=1"}; break;
+  case VS_CH_CMD:
+    m->as.cmd = (vs_msg_cmd){VS_YELLOW, {{1, 2}, {-3, 4}, {5, -6}}, true, 99, "emc:?pid=1", VS_3V3};
+    break;
   case VS_CH_REFEREE: m->as.referee = (vs_msg_referee){{VS_EVENT_GOAL, VS_YELLOW, 0, 7.5}, 120.0, {1, 2}}; break;
   case VS_CH_POLICY:
     m->as.policy.team = VS_YELLOW;
@@ -139,6 +141,41 @@ static void fields_keep_their_meaning(void **state) {
   assert_ok(vs_message_decode(VS_CH_CMD, bytes, size, &out, NULL, err));
   assert_near(out.as.cmd.wheels[2].right_radps, -6.0, 0);
   assert_true(out.as.cmd.stop && out.as.cmd.team == VS_YELLOW && out.as.cmd.state_seq == 99);
+}
+
+// Worlds and commands of five robots a team: types of their own on the same channels, every number in its place.
+static void five_robots_a_team_have_types_of_their_own(void **state) {
+  (void)state;
+  if (no_lcm()) return;
+  vs_message in, out;
+  uint8_t bytes[VS_MESSAGE_MAX_BYTES], of_three[VS_MESSAGE_MAX_BYTES];
+  fill(VS_CH_TRUTH, &in);
+  size_t three = vs_message_encode(&in, of_three, sizeof of_three);
+  vs_world *w = &in.as.world.world;
+  w->division = VS_5V5;
+  for (int i = 0; i < 10; i++)
+    w->robot[i / 5][i % 5] = (vs_robot){{i, 10 + i, 0.1 * i}, 20 + i, 30 + i, 40 + i, 50 + i, 60 + i, i % 2};
+  size_t size = vs_message_encode(&in, bytes, sizeof bytes);
+  assert_int_equal(size, three + 4 * (8 * 8 + 1)); // four robots more of eight doubles and a flag
+  assert_memory_not_equal(bytes, of_three, 8);     // another fingerprint
+  memset(&out, 0xff, sizeof out);
+  assert_ok(vs_message_decode(VS_CH_TRUTH, bytes, size, &out, NULL, err));
+  assert_true(vs_world_hash(VS_HASH_START, &out.as.world.world) == vs_world_hash(VS_HASH_START, w));
+  assert_int_equal(vs_message_decode(VS_CH_TRUTH, bytes, size - 1, &out, NULL, NULL), VS_FAIL);
+  assert_int_equal(vs_message_decode(VS_CH_CMD, bytes, size, &out, NULL, NULL), VS_FAIL);
+  memset(&out, 0xff, sizeof out);
+  assert_ok(vs_message_decode(VS_CH_TRUTH, of_three, three, &out, NULL, err));
+  assert_int_equal(out.as.world.world.division, VS_3V3);
+  assert_true(out.as.world.world.robot[VS_BLUE][4].pose.x_m == 0 && !out.as.world.world.robot[VS_BLUE][4].valid);
+
+  fill(VS_CH_CMD, &in);
+  in.as.cmd.division = VS_5V5;
+  in.as.cmd.wheels[4] = (vs_wheels){7, -8};
+  size = vs_message_encode(&in, bytes, sizeof bytes);
+  memset(&out, 0xff, sizeof out);
+  assert_ok(vs_message_decode(VS_CH_CMD, bytes, size, &out, NULL, err));
+  assert_true(out.as.cmd.division == VS_5V5 && out.as.cmd.wheels[4].right_radps == -8);
+  assert_string_equal(out.as.cmd.source, "emc:?pid=1");
 }
 
 // Decodes the golden message of channel and encodes it again, to the same bytes.
@@ -380,6 +417,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_message_survives_the_wire),
       cmocka_unit_test(fields_keep_their_meaning),
+      cmocka_unit_test(five_robots_a_team_have_types_of_their_own),
       cmocka_unit_test(golden_messages_of_another_implementation_are_read_and_written),
       cmocka_unit_test(cut_or_lengthened_messages_are_refused),
       cmocka_unit_test(a_text_without_its_end_is_refused),

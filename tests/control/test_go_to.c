@@ -113,12 +113,12 @@ static void drive(vs_sim *sim, const scene *c, const vs_event *restart, const vs
   bool touched = false;
   int frames = 0, held = 0;
   for (; frames < 30 * LIMIT_S + HELD && held < HELD; frames++) {
-    vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE] = {0};
+    vs_wheels wheels[VS_TEAMS][VS_TEAM_MOST] = {0};
     memmove(history + 1, history, DELAY * sizeof *history);
     history[0] = w;
     look(c, history, rng, &seen);
     for (int t = 0; t <= c->both; t++) vs_go_to_step(&go[t], &seen, (vs_team)t, target[t], wheels[t]);
-    assert_ok(vs_sim_frame(sim, (const vs_wheels(*)[VS_TEAM_SIZE])wheels, err));
+    assert_ok(vs_sim_frame(sim, (const vs_wheels(*)[VS_TEAM_MOST])wheels, err));
     vs_sim_world(sim, &w);
     touched = touched || touches(&w, VS_BLUE);
     bool there = vs_go_to_arrived(&w, VS_BLUE, target[VS_BLUE]) &&
@@ -220,9 +220,9 @@ static void a_robot_in_a_scrum_leaves_it_without_pushing(void **state) {
   vs_sim_place(sim, &start);
   int frames = 0;
   for (vs_sim_world(sim, &w); frames < 30 * LIMIT_S && !vs_go_to_arrived(&w, VS_BLUE, target[VS_BLUE]); frames++) {
-    vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE] = {0};
+    vs_wheels wheels[VS_TEAMS][VS_TEAM_MOST] = {0};
     vs_go_to_step(&go, &w, VS_BLUE, target[VS_BLUE], wheels[VS_BLUE]);
-    assert_ok(vs_sim_frame(sim, (const vs_wheels(*)[VS_TEAM_SIZE])wheels, err));
+    assert_ok(vs_sim_frame(sim, (const vs_wheels(*)[VS_TEAM_MOST])wheels, err));
     vs_sim_world(sim, &w);
   }
   assert_true(frames < 30 * LIMIT_S);

@@ -29,7 +29,7 @@ static answers measure(const char *player, double latency_s, double jitter_s, do
   answers a = {NAN, NAN, NAN, 0};
   for (int frame = 0; frame < (int)(seconds * VS_CAMERA_HZ) && !vs_env_over(env); frame++) {
     vs_world seen;
-    vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE];
+    vs_wheels wheels[VS_TEAMS][VS_TEAM_MOST];
     double answer_s;
     vs_env_measured(env, &seen);
     if (vs_latency_meter_see(meter, &seen, &answer_s)) {

@@ -62,7 +62,7 @@ static void both_teams_players_have_seeds_of_their_own(void **state) {
   for (uint64_t seed = 0; seed < 20; seed++) {
     assert_ok(vs_env_reset(env, seed, err));
     play_frames(env, 1);
-    vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE];
+    vs_wheels wheels[VS_TEAMS][VS_TEAM_MOST];
     vs_env_wheels(env, wheels);
     assert_true(memcmp(wheels[VS_BLUE], wheels[VS_YELLOW], sizeof wheels[VS_BLUE]) != 0);
   }
@@ -115,7 +115,7 @@ static void robots_that_are_sent_off_wait_beside_the_field_until_half_time(void 
   assert_true(sent_off >= 1);
   for (int t = 0; t < VS_TEAMS; t++)
     for (int i = 1; i < VS_TEAM_SIZE; i++) {
-      vs_pose beside = vs_world_beside((vs_team)t, i), parked = vs_world_parked((vs_team)t, i);
+      vs_pose beside = vs_world_beside(VS_3V3, (vs_team)t, i), parked = vs_world_parked(VS_3V3, (vs_team)t, i);
       assert_near(truth.robot[t][i].pose.x_m, beside.x_m, 1e-9);
       assert_near(truth.robot[t][i].pose.y_m, beside.y_m, 1e-9);
       vs_env_measured(env, &seen);

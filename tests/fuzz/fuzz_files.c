@@ -16,11 +16,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   if (vs_realism_load(path, &realism, &err) == VS_OK) {
     vs_sensors sensors;
     vs_world world = {0}, measured;
-    vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE] = {0}, out[VS_TEAMS][VS_TEAM_SIZE];
+    vs_wheels wheels[VS_TEAMS][VS_TEAM_MOST] = {0}, out[VS_TEAMS][VS_TEAM_MOST];
     vs_sensors_reset(&sensors, &realism, 1);
     for (int i = 0; i < 20; i++) {
       vs_sensors_measure(&sensors, &world, &measured);
-      vs_sensors_command(&sensors, (const vs_wheels(*)[VS_TEAM_SIZE])wheels, out);
+      vs_sensors_command(&sensors, (const vs_wheels(*)[VS_TEAM_MOST])wheels, out);
     }
   }
   return 0;

@@ -30,6 +30,50 @@ static void the_fullest_world_fits_into_512_bytes(void **state) {
   assert_int_equal(vs_fira_environment_encode(&e, bytes, size - 1), 0);
 }
 
+// Of 5 against 5 no more than 1024, and it says which field it is of; 3 against 3's decoder has no fifth robot.
+static void the_fullest_world_of_ten_robots_fits_into_1024_bytes(void **state) {
+  (void)state;
+  vs_fira_environment e = {.step = UINT32_MAX, .goals = {99, 99}}, back;
+  e.world.division = VS_5V5;
+  for (int i = 0; i < 10; i++)
+    e.world.robot[i / 5][i % 5] = (vs_robot){.pose = {-1.0123 + 0.21 * i, 0.8123 - 0.17 * i, -3.1 + 0.5 * i},
+                                             .vx_mps = 1.3131,
+                                             .vy_mps = -1.21,
+                                             .omega_radps = 12.345,
+                                             .valid = true};
+  e.world.ball = (vs_ball){1.21, -0.813, 0.0213, 2.2, -1.1, 0.01, true};
+  uint8_t bytes[VS_LEAGUE_DATAGRAM_5V5_MAX];
+  size_t size = vs_fira_environment_encode(&e, bytes, sizeof bytes);
+  assert_true(size > 600 && size <= 1024);
+  assert_ok(vs_fira_environment_decode(bytes, size, &back, err));
+  assert_int_equal(back.world.division, VS_5V5);
+  assert_true(back.world.robot[VS_YELLOW][4].valid && back.world.ball.valid);
+  assert_near(back.world.robot[VS_YELLOW][4].pose.x_m, -1.0123 + 0.21 * 9, 0);
+  e.world.division = VS_3V3;
+  size = vs_fira_environment_encode(&e, bytes, sizeof bytes);
+  assert_ok(vs_fira_environment_decode(bytes, size, &back, err));
+  assert_false(back.world.robot[VS_YELLOW][4].valid);
+  assert_false(back.world.ball.valid); // at 1.21 m: off that field
+}
+
+// What the match has not is left out and counted.
+static void a_packet_is_cut_to_the_division(void **state) {
+  (void)state;
+  vs_fira_packet p = {.commands = 2, .robots = 3, .places_ball = true, .ball = {.x_m = 1.0}};
+  p.command[0].robot = 4;
+  p.command[1].robot = 1;
+  p.place[0].robot = 3;
+  p.place[1].robot = 0;
+  p.place[1].pose.x_m = 1.0;
+  p.place[2].robot = 2;
+  vs_fira_packet five = p;
+  vs_fira_packet_fit(&five, VS_5V5);
+  assert_true(five.commands == 2 && five.robots == 3 && five.places_ball && five.dropped == 0);
+  vs_fira_packet_fit(&p, VS_3V3);
+  assert_true(p.commands == 1 && p.command[0].robot == 1 && p.robots == 1 && p.place[0].robot == 2);
+  assert_true(!p.places_ball && p.dropped == 4);
+}
+
 static void a_world_comes_back_as_it_was_sent(void **state) {
   (void)state;
   vs_fira_environment e = {.step = 1234, .world = full_world(), .goals = {2, 1}}, back;
@@ -196,6 +240,8 @@ static void a_million_datagrams_of_garbage_command_nothing(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_fullest_world_fits_into_512_bytes),
+      cmocka_unit_test(the_fullest_world_of_ten_robots_fits_into_1024_bytes),
+      cmocka_unit_test(a_packet_is_cut_to_the_division),
       cmocka_unit_test(a_world_comes_back_as_it_was_sent),
       cmocka_unit_test(a_command_has_the_bytes_of_the_protocol),
       cmocka_unit_test(a_replacement_turns_in_the_dialects_unit),

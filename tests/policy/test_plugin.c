@@ -49,7 +49,32 @@ static void plugin_with_an_unresolved_symbol_is_refused_with_its_name(void **sta
 static void plugin_of_another_version_is_refused(void **state) {
   (void)state;
   compile_bad("version", "-DBAD_VERSION=7");
-  assert_open_fails("version", "", "interface 7, this program speaks 1");
+  assert_open_fails("version", "", "interface 7, this program speaks 2");
+}
+
+// Built with the header of interface 1: it finds the ball behind three robots a team, and steers with it.
+static void plugin_of_the_first_interface_plays_on_in_3v3_alone(void **state) {
+  (void)state;
+  char command[4 * PATH_MAX], uri[256];
+  snprintf(command, sizeof command,
+           "cd '%s' && ${CC:-cc} -O1 -fPIC -shared -o '%s/first.so' tests/policy/plugins/first_interface.c", root,
+           folder);
+  if (system(command) != 0) fail_msg("failed: %s", command);
+  bad_uri(uri, sizeof uri, "first", "");
+  vs_player *player;
+  vs_error why = {0};
+  assert_ok(vs_player_open(uri, &player, err));
+  vs_world view = {.ball = {.x_m = 0.25}};
+  view.robot[VS_ADVERSARY][2].pose.y_m = -0.5;
+  vs_game game = {0};
+  vs_wheels out[VS_TEAM_MOST] = {{0}};
+  assert_ok(vs_player_step(player, &view, &game, 0.1, out, err));
+  assert_near(out[0].left_radps, 25, 1e-12);
+  assert_near(out[2].right_radps, -5, 1e-12);
+  assert_ok(vs_player_plays(player, VS_3V3, err));
+  assert_int_equal(vs_player_plays(player, VS_5V5, &why), VS_USAGE);
+  assert_non_null(strstr(why.text, "does not play 5v5"));
+  vs_player_close(player);
 }
 
 static void plugin_without_step_is_refused(void **state) {
@@ -221,6 +246,7 @@ int main(void) {
       cmocka_unit_test(plugin_without_the_entry_is_refused),
       cmocka_unit_test(plugin_with_an_unresolved_symbol_is_refused_with_its_name),
       cmocka_unit_test(plugin_of_another_version_is_refused),
+      cmocka_unit_test(plugin_of_the_first_interface_plays_on_in_3v3_alone),
       cmocka_unit_test(plugin_without_step_is_refused),
       cmocka_unit_test(plugin_whose_rate_does_not_divide_the_cameras_is_refused),
       cmocka_unit_test(plugin_that_crashes_while_loading_is_named),

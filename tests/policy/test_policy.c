@@ -116,7 +116,7 @@ static void given_step(void *state, const vs_world *world, const vs_game *game, 
   out[1].right_radps = given_radps;
 }
 
-static const vsss_player_api given = {VSSS_PLAYER_VERSION, "given", 30, 0, given_init, given_step, NULL};
+static const vsss_player_api given = {VSSS_PLAYER_VERSION, "given", 30, 0, given_init, given_step, NULL, 0};
 
 static const char *given_failure(const void *state) {
   (void)state;

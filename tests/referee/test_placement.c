@@ -385,7 +385,7 @@ static void own_placements_are_checked_against_each_restart(void **state) {
         vs_pose pose[VS_TEAM_SIZE];
         for (int t = 0; t < VS_TEAMS; t++) {
           for (int i = 0; i < VS_TEAM_SIZE; i++) pose[i] = w.robot[t][i].pose;
-          assert_ok(vs_placement_check(&event, (vs_team)t, pose, err));
+          assert_ok(vs_placement_check(VS_3V3, &event, (vs_team)t, pose, err));
         }
         for (int i = 0; i < VS_TEAM_SIZE; i++) pose[i] = w.robot[team][i].pose;
         pose[2] = (vs_pose){row[k].x_m, row[k].y_m, 0};
@@ -393,12 +393,12 @@ static void own_placements_are_checked_against_each_restart(void **state) {
         if (row[k].kind == VS_EVENT_FREE_BALL) // in the ball's quadrant, not beside the mark
           pose[2] = (vs_pose){w.ball.x_m > 0 ? 0.2 : -0.2, w.ball.y_m > 0 ? 0.1 : -0.1, 0};
         vs_error err = {0};
-        assert_int_equal(vs_placement_check(&event, (vs_team)team, pose, &err), VS_FAIL);
+        assert_int_equal(vs_placement_check(VS_3V3, &event, (vs_team)team, pose, &err), VS_FAIL);
         if (!strstr(err.text, "robot 2 at")) fail_msg("%s", err.text);
       }
   vs_event end = {.kind = VS_EVENT_END};
   vs_pose any[VS_TEAM_SIZE] = {{0}};
-  assert_int_equal(vs_placement_check(&end, VS_BLUE, any, NULL), VS_FAIL);
+  assert_int_equal(vs_placement_check(VS_3V3, &end, VS_BLUE, any, NULL), VS_FAIL);
 }
 
 // Blue's keeper is off: its last robot takes the goal. Blue's taker is off: the last one kicks. Yellow stays.
@@ -424,12 +424,12 @@ static void a_free_kicks_line_is_checked(void **state) {
   vs_error why = {0};
   const vs_event event = {.kind = VS_EVENT_FREE_KICK, .team = VS_BLUE};
   vs_pose pose[VS_TEAM_SIZE] = {{0.71, 0, 0}, {0.56, 0.2, 0}, {0.56, -0.2, 0}};
-  assert_ok(vs_placement_check(&event, VS_YELLOW, pose, err));
+  assert_ok(vs_placement_check(VS_3V3, &event, VS_YELLOW, pose, err));
   pose[2].y_m = 0.05;
-  assert_int_equal(vs_placement_check(&event, VS_YELLOW, pose, &why), VS_FAIL);
+  assert_int_equal(vs_placement_check(VS_3V3, &event, VS_YELLOW, pose, &why), VS_FAIL);
   assert_non_null(strstr(why.text, "second of its quadrant"));
   pose[2] = (vs_pose){0.3, -0.3, 0};
-  assert_int_equal(vs_placement_check(&event, VS_YELLOW, pose, &why), VS_FAIL);
+  assert_int_equal(vs_placement_check(VS_3V3, &event, VS_YELLOW, pose, &why), VS_FAIL);
   assert_non_null(strstr(why.text, "free kick allows none"));
 }
 

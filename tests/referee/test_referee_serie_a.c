@@ -346,9 +346,9 @@ static void a_free_ball_in_the_middle_keeps_the_circle_clear(void **state) {
           assert_true((t == VS_BLUE ? -1 : 1) * pose[i].x_m > 0);
           assert_true(hypot(pose[i].x_m, pose[i].y_m) > VS_CIRCLE_RADIUS_M + VS_ROBOT_SIZE_M / 2 - 1e-9);
         }
-        assert_ok(vs_placement_check(&event, (vs_team)t, pose, err));
+        assert_ok(vs_placement_check(VS_3V3, &event, (vs_team)t, pose, err));
         pose[2] = (vs_pose){t == VS_BLUE ? -0.1 : 0.1, 0.08, 0};
-        assert_int_equal(vs_placement_check(&event, (vs_team)t, pose, NULL), VS_FAIL);
+        assert_int_equal(vs_placement_check(VS_3V3, &event, (vs_team)t, pose, NULL), VS_FAIL);
       }
     }
 }

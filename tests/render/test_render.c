@@ -74,6 +74,36 @@ static void the_overhead_camera_shows_the_ball_where_its_pinhole_says(void **sta
   free(rgb);
 }
 
+// The larger field of 5 against 5 from 2.2 m: its height shows 2 * 0.93 m, its width 2 * 1.30 m; the width decides:
+// focal = 640 / 2.6 * 2.2 = 541.5 px. The ball, 2.17865 m below the lens: 1.0 m -> 248.6 px, 0.8 m -> 198.9 px.
+static void five_against_five_is_drawn_on_its_own_field_with_ten_robots(void **state) {
+  (void)state;
+  vs_render_def def = vs_render_def_default(VS_VIEW_CAMERA);
+  def.division = VS_5V5;
+  vs_render *r = renderer(&def);
+  uint8_t *rgb = malloc(640 * 480 * 3);
+  vs_world w = {.division = VS_5V5, .ball = {.x_m = 1.0, .y_m = 0.8, .z_m = VS_BALL_RADIUS_M, .valid = true}};
+  for (int i = 0; i < 10; i++)
+    w.robot[i / 5][i % 5] = (vs_robot){.pose = {-0.9 + 0.2 * i, i < 5 ? 0.3 : -0.3, 0}, .valid = true};
+  assert_ok(vs_render_world(r, &w, NULL, rgb, err));
+  centre c = find(rgb, 640, 480, orange[0], orange[1]);
+  assert_near(c.x_px, 320 + 248.6, 0.3);
+  assert_near(c.y_px, 240 - 198.9, 0.3);
+  static const uint8_t blue[2][3] = {{0, 30, 190}, {60, 110, 255}}, yellow[2][3] = {{220, 180, 0}, {255, 240, 80}};
+  // Patches of 6 cm on caps 2.12 m below the lens: 15.3 px wide, the rim blurred; five of each colour, and not four or six.
+  c = find(rgb, 640, 480, blue[0], blue[1]);
+  assert_true(c.count > 4.1 * 15.3 * 15.3 && c.count < 5.0 * 15.3 * 15.3);
+  assert_near(c.x_px, 320 - 0.5 * 541.5 / 2.12, 2); // the mean of -0.9, -0.7 ... -0.1
+  c = find(rgb, 640, 480, yellow[0], yellow[1]);
+  assert_true(c.count > 4.1 * 15.3 * 15.3 && c.count < 5.0 * 15.3 * 15.3);
+  vs_error why = {0};
+  w.division = VS_3V3;
+  assert_int_equal(vs_render_world(r, &w, NULL, rgb, &why), VS_FAIL);
+  assert_non_null(strstr(why.text, "a world of 3v3 for a renderer of 5v5"));
+  vs_render_free(r);
+  free(rgb);
+}
+
 static void a_cap_picture_shows_its_top_row_to_the_robots_front(void **state) {
   (void)state;
   // Black but for the first quarter of the top row: front left.
@@ -227,6 +257,7 @@ static void sizes_out_of_range_are_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_overhead_camera_shows_the_ball_where_its_pinhole_says),
+      cmocka_unit_test(five_against_five_is_drawn_on_its_own_field_with_ten_robots),
       cmocka_unit_test(a_cap_picture_shows_its_top_row_to_the_robots_front),
       cmocka_unit_test(adversaries_carry_their_colour_and_what_is_not_valid_is_left_out),
       cmocka_unit_test(the_broadcast_shows_score_clock_and_caption),

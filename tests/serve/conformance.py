@@ -22,10 +22,10 @@ def near(a, b, tolerance):
     return abs(a - b) <= tolerance
 
 
-def check_world(world, before, steps):
-    check("a datagram of %d bytes: clients read 512" % world.size, world.size <= 512)
-    check("robots %s" % [sorted(r) for r in world.robots], all(sorted(r) == [0, 1, 2] for r in world.robots))
-    check("field %s" % world.field, world.field[:4] == [1.3, 1.5, 0.4, 0.1])
+def check_world(world, before, steps, robots=3, most=512, field=(1.3, 1.5, 0.4, 0.1)):
+    check("a datagram of %d bytes: clients read %d" % (world.size, most), world.size <= most)
+    check("robots %s" % [sorted(r) for r in world.robots], all(sorted(r) == list(range(robots)) for r in world.robots))
+    check("field %s" % world.field, len(world.field) >= len(field) and all(near(a, b, 1e-9) for a, b in zip(world.field, field)))
     check("a number that is none", all(math.isfinite(v) for v in world.ball))
     if before:
         check("steps %d then %d" % (before.step, world.step), world.step - before.step in steps)
@@ -203,6 +203,46 @@ def time_out(offset, vsss):
     print("conformance: time-outs")
 
 
+def five(net):
+    """5 against 5: ten robots on 2.2 x 1.8 m, placements of five, goals behind the longer field; the fifth robot is commanded
+    as any other."""
+    field = (1.8, 2.2, 0.4, 0.15, 0.25, 0.5, 0.15, 0.375)
+    place = {0: (-1.03, 0.05, 90.0), 1: (-0.24, 0.0, 0.0), 2: (-0.5, 0.3, 0.0), 3: (-0.5, -0.3, 0.0), 4: (-0.8, -0.6, 45.0)}
+    default = ((1.03, 0.0), (0.3, 0.0), (0.45, 0.2), (0.45, -0.2), (0.7, 0.0))
+    calls, last, play, placed, moved = Calls(net), None, False, 0, 0.0
+    while not calls.over():
+        world = net.world()
+        check("no world for 30 s", world is not None)
+        check_world(world, last, (16, 17), 5, 1024, field)
+        if last and world.goals != last.goals:
+            check("goal with the ball at %s" % last.ball[:2], abs(last.ball[0]) > 1.0 or abs(world.ball[0]) > 1.0)
+        last = world
+        for call in calls.hear():
+            play = call.foul == GAME_ON
+            if call.foul == KICKOFF and call.team == BLUE:
+                net.send(placement(BLUE, place), net.placer)
+            if call.foul == GAME_ON and calls.run[-3][0].foul == KICKOFF and calls.run[-3][0].team == BLUE:
+                blue, yellow = world.robots
+                for i, (x, y, d) in place.items():
+                    check("blue %d was placed at %.3f %.3f" % (i, blue[i].x, blue[i].y), near(blue[i].x, x, 0.01) and near(blue[i].y, y, 0.01))
+                for i, (x, y) in enumerate(default):
+                    check("yellow %d stands at %.3f %.3f" % (i, yellow[i].x, yellow[i].y), near(yellow[i].x, x, 0.01) and near(yellow[i].y, y, 0.01))
+                placed += 1
+        blue = {i: (0.0, 0.0) for i in range(5)}
+        yellow = dict(blue)
+        if play:
+            blue[1] = attack(world.robots[0][1], world.ball, 1.2)
+            blue[4] = drive(world.robots[0][4], 0.0, -0.7)
+            yellow = {i: drive(r, 0.5, 0.75 if i % 2 else -0.75) for i, r in world.robots[1].items()}
+            moved = max(moved, world.robots[0][4].x + 0.8)
+        net.send(commands(BLUE, blue))
+        net.send(commands(YELLOW, yellow))
+    check("blue scored nothing", last.goals[0] >= 1)
+    check("no kick-off was looked at", placed >= 1)
+    check("blue 4 moved by %.2f m" % moved, moved > 0.5)
+    print("conformance: 5v5 %d : %d" % last.goals)
+
+
 def settle(net, send, frames, steps):
     """Answers so many worlds with the same datagrams; returns the last world."""
     last = None
@@ -283,12 +323,14 @@ def main():
     if case == "time_out":
         time_out(offset, sys.argv[3])
         return
-    net = Network(offset)
+    net = Network(offset, most=1024 if case == "five" else 512)
     net.send(commands(BLUE, {0: (0.0, 0.0)}))
     if case == "match":
         full_match(net)
     elif case == "punctual":
         punctual(net, float(sys.argv[3]))
+    elif case == "five":
+        five(net)
     elif case == "knockout":
         knockout(net)
     elif case == "firasim":

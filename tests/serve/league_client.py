@@ -133,7 +133,8 @@ def join(group, port):
 
 
 class Network:
-    def __init__(self, offset, command=20011):
+    def __init__(self, offset, command=20011, most=512):
+        self.most = most  # a client reads no more
         self.vision, self.referee = join(VISION, 10002 + offset), join(REFEREE, 10003 + offset)
         self.to = ("127.0.0.1", command + offset)
         self.placer = (REFEREE, 10004 + offset)
@@ -147,12 +148,12 @@ class Network:
         """The next world; None: the server is silent."""
         if not select.select([self.vision], [], [], timeout)[0]:
             return None
-        return World(self.vision.recv(512))  # a client reads no more
+        return World(self.vision.recv(self.most + 1))
 
     def catch_up(self):
         """Forgets the worlds that wait."""
         while select.select([self.vision], [], [], 0)[0]:
-            self.vision.recv(512)
+            self.vision.recv(self.most)
 
     def calls(self):
         out = []

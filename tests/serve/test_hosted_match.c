@@ -163,7 +163,7 @@ static void commands_saturate_and_hold(void **state) {
   assert_true(vs_hosted_command(match, VS_BLUE, 0, (vs_wheels){2000, 30}));
   assert_false(vs_hosted_command(match, VS_YELLOW, 0, (vs_wheels){30, 30}));
   frames(match, 45, NULL);
-  vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE];
+  vs_wheels wheels[VS_TEAMS][VS_TEAM_MOST];
   vs_hosted_wheels(match, wheels);
   assert_near(wheels[VS_BLUE][0].left_radps, VS_WHEEL_LIMIT_RADPS, 1e-9);
   assert_near(wheels[VS_BLUE][0].right_radps, 20, 1e-9); // 30 x 0.02 / 0.03
@@ -211,7 +211,7 @@ static void an_external_referee_moves_the_match(void **state) {
     vs_hosted_hear(match, &call); // one of ten
     assert_int_equal(vs_hosted_phase(match), row[k].phase);
     frames(match, 30, NULL);
-    vs_wheels wheels[VS_TEAMS][VS_TEAM_SIZE];
+    vs_wheels wheels[VS_TEAMS][VS_TEAM_MOST];
     vs_hosted_wheels(match, wheels);
     double moved = 0;
     for (int i = 0; i < VS_TEAM_SIZE; i++)
@@ -247,7 +247,7 @@ static void idle_robots_are_sent_off_until_half_time_and_play_goes_on(void **sta
   for (int i = 0; i < VS_TEAM_SIZE; i++)
     if (vs_hosted_world(match)->robot[VS_BLUE][i].pose.y_m > 0.9) off = i;
   assert_true(off >= 0);
-  vs_pose beside = vs_world_beside(VS_BLUE, off);
+  vs_pose beside = vs_world_beside(VS_3V3, VS_BLUE, off);
   vs_hosted_command(match, VS_BLUE, off, (vs_wheels){20, 20});
   while (vs_hosted_game(match)->time_s < 39.9) {
     assert_ok(vs_hosted_frame(match, &said, err));

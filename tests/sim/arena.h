@@ -10,7 +10,7 @@
 #include "vsss/geom.h"
 #include "vsss/sim.h"
 
-typedef vs_wheels arena_commands[VS_TEAMS][VS_TEAM_SIZE];
+typedef vs_wheels arena_commands[VS_TEAMS][VS_TEAM_MOST];
 
 static vs_model *arena_model[2]; // by vs_drive
 static vs_sim *arena_sim[2];

@@ -19,7 +19,7 @@ static uint64_t play(vs_sim *sim, bool all_pairs, const vs_sim_params *params, i
       double v = 46 * cos(to) + vs_rng_range(&rng, -20, 20), w = 30 * sin(to);
       command[i / 3][i % 3] = (vs_wheels){v - w, v + w};
     }
-    if (vs_sim_frame(sim, (const vs_wheels(*)[VS_TEAM_SIZE])command, NULL) != VS_OK) fail();
+    if (vs_sim_frame(sim, (const vs_wheels(*)[VS_TEAM_MOST])command, NULL) != VS_OK) fail();
     vs_sim_world(sim, &world);
     hash = vs_world_hash(hash, &world);
     if (sim->view.npair < *fewest) *fewest = sim->view.npair;

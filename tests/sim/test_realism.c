@@ -112,7 +112,7 @@ static void the_ideal_share_of_the_episodes_has_only_the_papers_noise(void **sta
   assert_int_equal(load("ideal_share = 1.5\n", &r, &err), VS_USAGE);
 }
 
-// A fifth of 4,000 episodes, for each of both teams' three opponents and ball: 800 +- 76 (3 deviations). Own robots are seen.
+// A fifth of 4,000 episodes, for each of both teams' five opponents and ball: 800 +- 76 (3 deviations). Own robots are seen.
 static void what_a_team_never_sees_is_drawn_for_each_object(void **state) {
   (void)state;
   vs_realism r;
@@ -127,7 +127,7 @@ static void what_a_team_never_sees_is_drawn_for_each_object(void **state) {
   }
   for (int t = 0; t < VS_TEAMS; t++)
     for (int i = 0; i < VS_SENSOR_OBJECTS; i++) {
-      bool own = i / VS_TEAM_SIZE == t && i < VS_TEAMS * VS_TEAM_SIZE;
+      bool own = i / VS_TEAM_MOST == t && i < VS_TEAMS * VS_TEAM_MOST;
       assert_in_range(count[t][i], own ? 0 : 800 - 76, own ? 0 : 800 + 76);
     }
   assert_int_equal(load("never_seen_share = 1\nideal_share = 0.25\n", &r, &err), VS_OK);

@@ -144,13 +144,13 @@ static void what_was_never_seen_is_parked_and_such_robots_stand(void **state) {
     vs_sensors sensors;
     vs_sensors_reset(&sensors, &realism, seed);
     vs_sensors_measure(&sensors, &truth, &seen);
-    vs_wheels in[VS_TEAMS][VS_TEAM_SIZE], out[VS_TEAMS][VS_TEAM_SIZE];
+    vs_wheels in[VS_TEAMS][VS_TEAM_MOST], out[VS_TEAMS][VS_TEAM_MOST];
     for (int i = 0; i < 6; i++) in[i / 3][i % 3] = (vs_wheels){5, 6};
-    vs_sensors_command(&sensors, (const vs_wheels(*)[VS_TEAM_SIZE])in, out);
+    vs_sensors_command(&sensors, (const vs_wheels(*)[VS_TEAM_MOST])in, out);
     for (int i = 0; i < 6; i++) {
       const vs_robot *r = &seen.robot[i / 3][i % 3];
-      vs_pose parked = vs_world_parked((vs_team)(i / 3), i % 3);
-      bool told = sensors.held_frames[i] == 0;
+      vs_pose parked = vs_world_parked(VS_3V3, (vs_team)(i / 3), i % 3);
+      bool told = sensors.held_frames[i / 3 * VS_TEAM_MOST + i % 3] == 0;
       assert_int_equal(r->valid, told);
       assert_near(r->pose.x_m, told ? truth.robot[i / 3][i % 3].pose.x_m : parked.x_m, 1e-12);
       assert_near(r->pose.y_m, told ? truth.robot[i / 3][i % 3].pose.y_m : parked.y_m, 1e-12);
@@ -188,10 +188,10 @@ static void losses_come_as_often_as_asked_and_twice_near_walls(void **state) {
 static void arrivals(const vs_realism *realism, uint64_t seed, double *left, int frames) {
   vs_sensors sensors;
   vs_sensors_reset(&sensors, realism, seed);
-  vs_wheels in[VS_TEAMS][VS_TEAM_SIZE], out[VS_TEAMS][VS_TEAM_SIZE];
+  vs_wheels in[VS_TEAMS][VS_TEAM_MOST], out[VS_TEAMS][VS_TEAM_MOST];
   for (int i = 0; i < 6; i++) in[i / 3][i % 3] = (vs_wheels){10, -10};
   for (int f = 0; f < frames; f++) {
-    vs_sensors_command(&sensors, (const vs_wheels(*)[VS_TEAM_SIZE])in, out);
+    vs_sensors_command(&sensors, (const vs_wheels(*)[VS_TEAM_MOST])in, out);
     assert_near(out[0][2].right_radps, -out[0][2].left_radps, 1e-12);
     left[f] = out[0][2].left_radps;
   }
@@ -237,12 +237,12 @@ static void lost_radio_frames_keep_the_last_command(void **state) {
   realism.radio_burst_frames = (vs_range){3, 3};
   vs_sensors sensors;
   vs_sensors_reset(&sensors, &realism, 6);
-  vs_wheels in[VS_TEAMS][VS_TEAM_SIZE], out[VS_TEAMS][VS_TEAM_SIZE];
+  vs_wheels in[VS_TEAMS][VS_TEAM_MOST], out[VS_TEAMS][VS_TEAM_MOST];
   int lost = 0, run = 0;
   double last = 0;
   for (int f = 0; f < N; f++) {
     for (int i = 0; i < 6; i++) in[i / 3][i % 3] = (vs_wheels){f + 1, 0};
-    vs_sensors_command(&sensors, (const vs_wheels(*)[VS_TEAM_SIZE])in, out);
+    vs_sensors_command(&sensors, (const vs_wheels(*)[VS_TEAM_MOST])in, out);
     bool arrived = out[1][0].left_radps == f + 1;
     if (arrived) {
       assert_int_equal(run % 3, 0);

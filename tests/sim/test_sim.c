@@ -29,7 +29,7 @@ static int close_sim(void **state) {
 }
 
 static void frames(int n, double left, double right) {
-  vs_wheels command[VS_TEAMS][VS_TEAM_SIZE] = {{{0}}};
+  vs_wheels command[VS_TEAMS][VS_TEAM_MOST] = {{{0}}};
   command[VS_BLUE][1] = (vs_wheels){left, right};
   for (int i = 0; i < n; i++) assert_ok(vs_sim_frame(sim, command, err));
 }
@@ -80,7 +80,7 @@ static void a_robot_beside_the_field_is_left_alone(void **state) {
   frames(90, 0, 0);
   vs_sim_world(sim, &read);
   for (int i = 0; i < VS_TEAMS * VS_TEAM_SIZE; i++) {
-    vs_pose beside = vs_world_beside((vs_team)(i / 3), i % 3);
+    vs_pose beside = vs_world_beside(VS_3V3, (vs_team)(i / 3), i % 3);
     assert_near(read.robot[i / 3][i % 3].pose.x_m, beside.x_m, 1e-3);
     assert_near(read.robot[i / 3][i % 3].pose.y_m, beside.y_m, 1e-3);
   }
@@ -125,7 +125,7 @@ static void robots_at_rest_stay_where_they_are(void **state) {
 
 static void command_that_is_not_a_number_is_refused_by_name(void **state) {
   (void)state;
-  vs_wheels command[VS_TEAMS][VS_TEAM_SIZE] = {{{0}}};
+  vs_wheels command[VS_TEAMS][VS_TEAM_MOST] = {{{0}}};
   command[VS_YELLOW][2].right_radps = NAN;
   vs_error err = {0};
   assert_int_equal(vs_sim_frame(sim, command, &err), VS_FAIL);
@@ -139,7 +139,7 @@ static void broken_state_is_reported_not_reset_silently(void **state) {
   vs_sim_world(sim, &world);
   world.ball.x_m = NAN;
   vs_sim_place(sim, &world);
-  vs_wheels command[VS_TEAMS][VS_TEAM_SIZE] = {{{0}}};
+  vs_wheels command[VS_TEAMS][VS_TEAM_MOST] = {{{0}}};
   vs_error err = {0};
   assert_int_equal(vs_sim_frame(sim, command, &err), VS_FAIL);
   assert_non_null(strstr(err.text, "Nan"));
@@ -165,7 +165,7 @@ static void a_ball_is_placed_rolling(void **state) {
     world.ball.vx_mps = 0.6 * 0.8;
     world.ball.vy_mps = 0.6 * 0.6;
     vs_sim_place(own, &world);
-    const vs_wheels still[VS_TEAMS][VS_TEAM_SIZE] = {{{0}}};
+    const vs_wheels still[VS_TEAMS][VS_TEAM_MOST] = {{{0}}};
     for (int k = 0; k < 15; k++) assert_ok(vs_sim_frame(own, still, err));
     vs_sim_world(own, &world);
     assert_near(world.ball.x_m + 0.2, 0.275 * 0.8, 0.01);
@@ -195,9 +195,9 @@ static void frames_may_have_another_length(void **state) {
   vs_sim_world(sim, &after);
   double gone_m = after.robot[VS_BLUE][1].pose.x_m - before.robot[VS_BLUE][1].pose.x_m;
   vs_sim_place(quick, &before);
-  vs_wheels command[VS_TEAMS][VS_TEAM_SIZE] = {{{0}}};
+  vs_wheels command[VS_TEAMS][VS_TEAM_MOST] = {{{0}}};
   command[VS_BLUE][1] = (vs_wheels){20, 20};
-  for (int i = 0; i < 40; i++) assert_ok(vs_sim_frame(quick, (const vs_wheels(*)[VS_TEAM_SIZE])command, err));
+  for (int i = 0; i < 40; i++) assert_ok(vs_sim_frame(quick, (const vs_wheels(*)[VS_TEAM_MOST])command, err));
   vs_sim_world(quick, &after);
   assert_int_equal(after.time_us, 1000000);
   assert_true(gone_m > 0.5);

@@ -12,7 +12,7 @@ static uint64_t play(vs_sim *sim, vs_rng *rng, int frames) {
     for (int i = 0; i < 6 && f % 3 == 0; i++) {
       command[i / 3][i % 3] = (vs_wheels){vs_rng_range(rng, -46, 46), vs_rng_range(rng, -46, 46)};
     }
-    assert_ok(vs_sim_frame(sim, (const vs_wheels(*)[VS_TEAM_SIZE])command, err));
+    assert_ok(vs_sim_frame(sim, (const vs_wheels(*)[VS_TEAM_MOST])command, err));
     vs_sim_world(sim, &world);
     hash = vs_world_hash(hash, &world);
   }

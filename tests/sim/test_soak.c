@@ -59,7 +59,7 @@ static void soak(int drive) {
     if (f % 1200 == 0) kick_off(sim, &rng);
     vs_sim_world(sim, &world);
     if (f % 3 == 0) decide(&rng, &world, f / 3, command);
-    arena_frames(sim, 1, (const vs_wheels(*)[VS_TEAM_SIZE])command);
+    arena_frames(sim, 1, (const vs_wheels(*)[VS_TEAM_MOST])command);
     vs_sim_world(sim, &world);
     vs_error err = {0};
     if (vs_world_check(&world, &err) != VS_OK) fail_msg("%s", err.text);

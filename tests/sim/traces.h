@@ -23,7 +23,7 @@ typedef struct trace {
   int kind;
   vs_world start;
   bool uses_robot[6];
-  vs_wheels command[TRACE_FRAMES][VS_TEAMS][VS_TEAM_SIZE];
+  vs_wheels command[TRACE_FRAMES][VS_TEAMS][VS_TEAM_MOST];
 } trace;
 
 // The trace's pieces after each frame.

@@ -39,7 +39,7 @@ static void the_tracker_tells_the_same(void **state) {
   vs_world told;
   vs_track_init(&tracker, &def);
   vs_track_world(&tracker, 1000000, &told);
-  vs_pose parked = vs_world_parked(VS_YELLOW, 1);
+  vs_pose parked = vs_world_parked(VS_3V3, VS_YELLOW, 1);
   assert_true(told.robot[VS_YELLOW][1].pose.x_m == parked.x_m && !told.robot[VS_YELLOW][1].valid);
   assert_true(told.ball.x_m == 0 && !told.ball.valid);
   vs_object *o = &tracker.robot[VS_OWN][0];

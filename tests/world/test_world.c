@@ -96,10 +96,10 @@ static void robots_that_nobody_saw_stand_in_their_own_corners(void **state) {
   (void)state;
   for (int team = 0; team < VS_TEAMS; team++)
     for (int i = 0; i < VS_TEAM_SIZE; i++) {
-      vs_pose p = vs_world_parked((vs_team)team, i);
+      vs_pose p = vs_world_parked(VS_3V3, (vs_team)team, i);
       assert_near(p.x_m, team == VS_BLUE ? -0.70 : 0.70, 1e-12);
       assert_true(fabs(p.y_m) > 0.40 && fabs(p.y_m) < 0.62); // beside the goal area (0.35) and inside the wall (0.65)
-      for (int k = 0; k < i; k++) assert_true(fabs(p.y_m - vs_world_parked((vs_team)team, k).y_m) > 0.11);
+      for (int k = 0; k < i; k++) assert_true(fabs(p.y_m - vs_world_parked(VS_3V3, (vs_team)team, k).y_m) > 0.11);
     }
 }
 
