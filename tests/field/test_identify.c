@@ -122,7 +122,7 @@ static vs_wheels command_of(const rig *r, const vs_world *world, int frame) {
 static void look_at(vs_drive drive, const char *player, vs_identified *is) {
   rig r = open_rig(drive, player);
   vs_rng rng = vs_rng_make(7, 0);
-  vs_wheels all[VS_TEAMS][VS_TEAM_SIZE] = {{{0}}}, said = {0};
+  vs_wheels all[VS_TEAMS][VS_TEAM_MOST] = {{{0}}}, said = {0};
   for (int k = 0; k < SIGHTS; k++) {
     vs_world world;
     vs_sim_world(r.sim, &world);
