@@ -17,8 +17,8 @@
 extern "C" {
 #endif
 
-#define VSSS_PLAYER_VERSION                                                                                            \
-  2 // 2: worlds with room for five robots a team, and divisions; 1 goes on to be played, 3 against 3
+// 2: worlds with room for five robots a team, and divisions; 1 goes on to be played, 3 against 3.
+#define VSSS_PLAYER_VERSION 2
 
 #define VSSS_PLAYS(division) (UINT32_C(1) << (division))
 

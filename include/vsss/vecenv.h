@@ -76,8 +76,8 @@ VSSS_API uint64_t vs_vecenv_hash(const vs_vecenv *vec); // of all true worlds of
 // Snapshots, to be restored into a vecenv of the same def and players (any number of threads). Size 0: some player
 // cannot be snapshotted. VS_VECENV_STATE is the version of these bytes: whoever changes what a match keeps between two
 // steps (of simulator, sensors, referee, rewards or players) raises it, so that a checkpoint of before is refused by name.
-#define VS_VECENV_STATE                                                                                                \
-  5 // 5: room for five robots a team; 4: what is told of unseen objects; 3: the referee's idle rule, pushing and knockout
+// 5: room for five robots a team; 4: what is told of unseen objects; 3: the referee's idle rule, pushing and knockout.
+#define VS_VECENV_STATE 5
 VSSS_API size_t vs_vecenv_state_size(const vs_vecenv *vec);
 VSSS_API void vs_vecenv_save(const vs_vecenv *vec, void *state);
 // VS_FAIL: a number that cannot be, as in a damaged file; the vecenv must then be reset.
