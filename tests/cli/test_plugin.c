@@ -57,7 +57,7 @@ static void plugins_that_do_not_fit_are_refused(void **state) {
   (void)state;
   compile_bad("version", "-DBAD_VERSION=7");
   compile_bad("entry", "-DBAD_ENTRY");
-  assert_refused(arguments("sim --blue plugin:%s", "version.so"), 1, "interface 7, this program speaks 1");
+  assert_refused(arguments("sim --blue plugin:%s", "version.so"), 1, "interface 7, this program speaks 2");
   assert_refused(arguments("sim --blue plugin:%s", "entry.so"), 1, "no symbol vsss_player");
   assert_refused(arguments("sim --blue plugin:%s", "nothing.so"), 1, "nothing.so: cannot be loaded");
   assert_refused("sim --blue plugin:", 2, "plugin: needs a file");
