@@ -8,7 +8,7 @@ report() { # message, matches
 }
 code='src/*.c src/*.h src/*.cpp include/*.h'
 set -f # patterns are for git, not for the shell
-search() { git grep -nE "$@" || :; }
+search() { git grep -InE "$@" || :; }
 report "buffers without a size, or a hidden generator:" \
   "$(search '(^|[^a-zA-Z_])(gets|strcpy|strcat|sprintf|vsprintf|strtok|rand|srand|random)\(' -- $code)"
 # mujoco_call.c: MuJoCo's error handler may not return, and aborts where no call of ours is there to jump back to.
