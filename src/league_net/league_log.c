@@ -59,7 +59,7 @@ void vs_league_log_put(vs_league_log *log, int64_t time_ms, vs_league_kind kind,
   put_number(head + 8, (uint64_t)kind, 4);
   put_number(head + 12, size, 4);
   fwrite(head, 1, sizeof head, log->file);
-  fwrite(data, 1, size, log->file);
+  if (size) fwrite(data, 1, size, log->file); // an empty one may have no data at all
 }
 
 vs_status vs_league_log_next(vs_league_log *log, vs_league_entry *out, bool *end, vs_error *err) {

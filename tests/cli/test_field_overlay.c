@@ -113,7 +113,7 @@ static void the_video_shows_the_cameras_pictures_with_the_marks_outlined(void **
     print_message("note: no OpenCV to read a video with\n");
     skip();
   }
-  int frames = 0, green = 0;
+  int frames = 0, outlined = 0;
   vs_frame frame;
   vs_camera_got got = VS_CAMERA_FRAME;
   while (got == VS_CAMERA_FRAME) {
@@ -121,17 +121,19 @@ static void the_video_shows_the_cameras_pictures_with_the_marks_outlined(void **
     if (got != VS_CAMERA_FRAME) break;
     frames++;
     assert_int_equal(frame.width, PICTURE_W);
-    green = 0;
+    int green = 0;
     for (int y = 190; y < 300; y++)
       for (int x = 90; x < 200; x++) {
         const uint8_t *p = frame.bgr + y * frame.bgr_stride + 3 * x;
         green += p[1] > p[0] + 50 && p[1] > p[2] + 50;
       }
+    outlined += green > 40;
   }
   vs_camera_close(camera);
-  print_message("%d frames, %d green pixels in the last\n", frames, green);
+  print_message("%d frames, the tag outlined in %d\n", frames, outlined);
   assert_true(frames > 45); // three seconds are 90
-  assert_true(green > 40);
+  // The last ones may be of the camera's end, and a busy machine's of a picture that came too late.
+  assert_true(outlined > frames / 2);
 }
 
 // It takes the pipe and reads nothing for five seconds.
