@@ -262,6 +262,43 @@ static void one_wild_measurement_is_refused_and_two_at_one_place_are_believed(vo
   assert_near(w.robot[0][0].pose.theta_rad, 1.0, 1e-6);
 }
 
+// A robot that has stood at (0.2, 0.2) for ten frames, seen without noise: the gate is its 6 cm alone.
+static int stand(vs_tracker *t, const vs_calib *c) {
+  vs_track_def def = vs_track_def_default();
+  def.position_noise_m = 1e-6;
+  def.robot_acceleration_mps2 = 0;
+  vs_track_init(t, &def);
+  int k = 0;
+  for (; k < 10; k++) {
+    vs_detections seen = at(k);
+    see_tag(&seen, c, 0, 0.2, 0.2, 0);
+    vs_track_update(t, c, &seen);
+  }
+  return k;
+}
+
+static void a_jump_of_6_cm_is_refused_and_two_within_10_cm_are_believed(void **state) {
+  (void)state;
+  vs_calib c = calib();
+  vs_tracker t;
+  const double jump_m[] = {0.058, 0.062}, apart_m[] = {0.098, 0.102};
+  for (int far = 0; far < 2; far++) {
+    vs_detections moved = at(stand(&t, &c));
+    see_tag(&moved, &c, 0, 0.2 + jump_m[far], 0.2, 0);
+    vs_track_update(&t, &c, &moved);
+    assert_int_equal(t.stats.refused, far);
+
+    int k = stand(&t, &c);
+    for (int i = 0; i < 2; i++) {
+      vs_detections wild = at(k + i);
+      see_tag(&wild, &c, 0, -0.4 + apart_m[far] * i, 0.2, 0);
+      vs_track_update(&t, &c, &wild);
+    }
+    assert_int_equal(t.stats.refused, 1 + far);
+    assert_near(world_of(&t).robot[0][0].pose.x_m, far ? 0.2 : -0.4 + apart_m[0], 1e-4);
+  }
+}
+
 static void after_a_restart_the_next_sight_is_taken_as_it_is(void **state) {
   (void)state;
   vs_calib c = calib();
@@ -439,6 +476,7 @@ int main(void) {
       cmocka_unit_test(a_lost_object_is_predicted_for_100_ms_then_invalid_and_kept_in_place),
       cmocka_unit_test(asked_later_than_the_newest_frame_the_world_is_predicted_and_at_last_invalid),
       cmocka_unit_test(one_wild_measurement_is_refused_and_two_at_one_place_are_believed),
+      cmocka_unit_test(a_jump_of_6_cm_is_refused_and_two_within_10_cm_are_believed),
       cmocka_unit_test(after_a_restart_the_next_sight_is_taken_as_it_is),
       cmocka_unit_test(things_off_the_field_are_not_believed),
       cmocka_unit_test(the_ball_nearest_to_its_track_is_ours_and_a_new_one_the_best),
