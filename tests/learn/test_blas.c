@@ -100,7 +100,7 @@ static void onednn_starts_no_threads_and_leaves_openmp_as_it_was(void **state) {
   (void)state;
   enum { SIDE = 512 };
   vs_blas blas;
-  if (!open_or_note(&blas, VS_BLAS_ONEDNN)) return;
+  if (!open_or_note(&blas, VS_BLAS_ONEDNN)) skip();
   float *square = calloc(3 * SIDE * SIDE, sizeof *square), *other = square + SIDE * SIDE, *out = other + SIDE * SIDE;
   blas.set_threads(3);
   int before = threads_of_this_process();
