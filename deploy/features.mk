@@ -54,7 +54,7 @@ build/gen/league/.made: $(PROTO_SRC)
 $(PROTO_NAMES:%=build/gen/league/%.pb-c.c): build/gen/league/.made ;
 $(B)/gen/league/%.o: build/gen/league/%.c
 	@mkdir -p $(@D)
-	$(Q)$(CC) -std=gnu11 -w $(OPT) -fPIC $(SAN) -Ibuild/gen/league -c -o $@ $<
+	$(Q)$(CC) -std=gnu11 -w $(OPT) -fPIC -fvisibility=hidden $(SAN) -Ibuild/gen/league $(CPPFLAGS) $(CFLAGS) -c -o $@ $<
 $(B)/src/league_net/messages.o: build/gen/league/.made
 endif
 
