@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "cli.h"
@@ -19,6 +18,7 @@
 #include "vsss/journal.h"
 #include "vsss/learn.h"
 #include "vsss/number.h"
+#include "vsss/paths.h"
 
 typedef struct session {
   const train_options *opt;
@@ -144,7 +144,8 @@ static vs_status keep(session *s, vs_error *err) {
   double million = s->report.transitions * 1e-6;
   s->kept_m = floor(million / s->opt->keep_m) * s->opt->keep_m;
   snprintf(path, sizeof path, "%s/kept", s->folder);
-  if (mkdir(path, 0777) != 0 && errno != EEXIST) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
+  vs_status status = vs_path_make_folder(path, 0777, err);
+  if (status != VS_OK) return status;
   snprintf(path, sizeof path, "%s/kept/%010.0f.checkpoint", s->folder, s->report.transitions);
   return vs_train_save_slim(s->train, path, err);
 }

@@ -61,7 +61,8 @@ static vs_status make_jar(const char *types, const char *folder, vs_error *err) 
 
   snprintf(classes, sizeof classes, "%s/classes", folder);
   snprintf(pattern, sizeof pattern, "%s/vsss/*.java", folder);
-  if (mkdir(classes, 0777) != 0) return vs_fail(err, VS_FAIL, "%s: %s", classes, strerror(errno));
+  s = vs_path_make_folder(classes, 0777, err);
+  if (s != VS_OK) return s;
   char *compile[ARGUMENTS_MAX] = {"javac", "-nowarn", "-cp", LCM_JAR, "-d", classes, NULL};
   n = 6;
   memset(&found, 0, sizeof found);
@@ -92,12 +93,22 @@ static vs_status hash_types(const char *types, uint64_t *hash, vs_error *err) {
   return VS_OK;
 }
 
-static vs_status make_folder(const char *path, vs_error *err) {
-  if (mkdir(path, 0777) != 0 && errno != EEXIST) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
-  return VS_OK;
+// Java runs what lies there: nobody but the user may have put it there.
+static vs_status cache_folder(char *cache, size_t size, vs_error *err) {
+  const char *base = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+  if (base && *base)
+    snprintf(cache, size, "%s/vsss", base);
+  else if (home && *home)
+    snprintf(cache, size, "%s/.cache/vsss", home);
+  else
+    snprintf(cache, size, "/tmp/vsss-cache-%u", (unsigned)geteuid());
+  vs_status s = vs_path_make_folder(cache, 0700, err);
+  int folder = -1;
+  if (s == VS_OK) s = vs_path_own_folder(cache, false, &folder, err);
+  if (folder >= 0) close(folder);
+  return s;
 }
 
-// The jar lies in the user's cache folder.
 static vs_status find_jar(char *jar, size_t size, vs_error *err) {
   char types[PATH], cache[PATH], work[PATH], made[PATH + 16];
   vs_status s = vs_path_find("lcm_types/world_t.lcm", types, sizeof types, err);
@@ -105,13 +116,7 @@ static vs_status find_jar(char *jar, size_t size, vs_error *err) {
   *strrchr(types, '/') = '\0';
   uint64_t hash = 0;
   s = hash_types(types, &hash, err);
-  if (s != VS_OK) return s;
-  const char *base = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
-  snprintf(cache, sizeof cache, "%s%s", base && *base ? base : home ? home : "/tmp", base && *base ? "" : "/.cache");
-  s = make_folder(cache, err);
-  size_t used = strlen(cache);
-  snprintf(cache + used, sizeof cache - used, "/vsss");
-  if (s == VS_OK) s = make_folder(cache, err);
+  if (s == VS_OK) s = cache_folder(cache, sizeof cache, err);
   if (s != VS_OK) return s;
   snprintf(jar, size, "%.400s/types-%016llx.jar", cache, (unsigned long long)hash);
   if (access(jar, R_OK) == 0) return VS_OK;

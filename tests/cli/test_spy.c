@@ -102,6 +102,34 @@ static void the_jar_of_our_types_is_made_once(void **state) {
   assert_int_equal(system(list), 0);
 }
 
+// Java would run a jar that somebody else put there.
+static void a_cache_that_others_may_write_into_is_refused(void **state) {
+  (void)state;
+  char cache[64], line[256];
+  snprintf(cache, sizeof cache, "/tmp/vsss_test_spy_%ld", (long)getpid());
+  setenv("XDG_CACHE_HOME", cache, 1);
+  setenv("DISPLAY", ":4711", 1);
+  static const char *const made[][2] = {{"mkdir -p '%1$s/vsss' && chmod 777 '%1$s/vsss'", "others may write into it"},
+                                        {"mkdir -p '%1$s/else' && ln -s else '%1$s/vsss'", "is a link"}};
+  static vsss_run refused[2];
+  for (int i = 0; i < 2; i++) {
+    snprintf(line, sizeof line, made[i][0], cache);
+    assert_int_equal(system(line), 0);
+    vsss(&refused[i], "spy --lcm memq://");
+    snprintf(line, sizeof line, "rm -r '%s'", cache);
+    assert_int_equal(system(line), 0);
+  }
+  unsetenv("DISPLAY");
+  for (int i = 0; i < 2; i++) {
+    assert_int_equal(refused[i].status, 1);
+    if (strstr(refused[i].err, "install")) {
+      print_message("note: %s", refused[i].err);
+      skip();
+    }
+    if (!strstr(refused[i].err, made[i][1])) fail_msg("%s", refused[i].err);
+  }
+}
+
 static void wrong_urls_and_missing_routes_are_named(void **state) {
   (void)state;
   assert_refused("spy --print --lcm tcp://here", 2, "tcp://here");
@@ -129,6 +157,7 @@ int main(void) {
       cmocka_unit_test(silence_is_said),
       cmocka_unit_test(without_a_display_the_window_points_to_print),
       cmocka_unit_test(the_jar_of_our_types_is_made_once),
+      cmocka_unit_test(a_cache_that_others_may_write_into_is_refused),
       cmocka_unit_test(wrong_urls_and_missing_routes_are_named),
   };
   return cmocka_run_group_tests_name("cli/spy", tests, NULL, NULL);
