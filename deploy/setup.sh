@@ -78,7 +78,8 @@ clang-format cppcheck shellcheck  make lint
 python3-pip python3-venv  make wheel, tests of the Python package
 python3-torch       its examples that learn
 chromium-headless-shell  the test of view's page in a real browser
-iproute2            network namespaces, for the test of training on two hosts"
+iproute2            network namespaces, for the test of training on two hosts
+locales             a decimal comma, for the tests of the library in a program that has one"
 fi
 
 if [ "$minimal" ]; then

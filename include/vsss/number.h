@@ -1,4 +1,5 @@
-// Numbers as a user writes them, the same in flags, settings and files.
+// Numbers as a user writes them, the same in flags, settings and files, and with a decimal point whatever locale the
+// program around the library has set.
 #ifndef VSSS_NUMBER_H
 #define VSSS_NUMBER_H
 
@@ -14,6 +15,12 @@ extern "C" {
 bool vs_parse_real(const char *text, double *out);
 bool vs_parse_whole(const char *text, int *out);
 bool vs_parse_seed(const char *text, uint64_t *out);
+
+// As "%g" writes it.
+typedef struct vs_number_text {
+  char text[32];
+} vs_number_text;
+vs_number_text vs_real_text(double number);
 
 #ifdef __cplusplus
 }

@@ -1,16 +1,29 @@
+#define _GNU_SOURCE // strtod_l
 #include "vsss/number.h"
 
 #include <ctype.h>
 #include <errno.h>
 #include <limits.h>
+#include <locale.h>
 #include <math.h>
+#include <pthread.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+// Kept for good: threads of the host program may be using it when it ends.
+static locale_t plain;
+static void make_plain(void) { plain = newlocale(LC_ALL_MASK, "C", (locale_t)0); }
+static locale_t plain_locale(void) {
+  static pthread_once_t once = PTHREAD_ONCE_INIT;
+  pthread_once(&once, make_plain);
+  return plain;
+}
 
 bool vs_parse_real(const char *text, double *out) {
   char *end;
   errno = 0;
-  double number = strtod(text, &end);
+  double number = strtod_l(text, &end, plain_locale());
   // A number too small for a double is 0 or nearly so, which is what was meant.
   if (end == text || *end || !isfinite(number)) return false;
   *out = number;
@@ -34,4 +47,12 @@ bool vs_parse_seed(const char *text, uint64_t *out) {
   if (!*digits || errno) return false;
   *out = number;
   return true;
+}
+
+vs_number_text vs_real_text(double number) {
+  vs_number_text out;
+  locale_t theirs = uselocale(plain_locale());
+  snprintf(out.text, sizeof out.text, "%g", number);
+  uselocale(theirs);
+  return out;
 }

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "vsss/number.h"
+
 static vs_status parse_share(const char *word, vs_league_share *share, vs_error *err) {
   char name[96];
   const char *equals = strrchr(word, '=');
@@ -16,9 +18,7 @@ static vs_status parse_share(const char *word, vs_league_share *share, vs_error 
   const char *question = strchr(word, '?');
   bool weighted = equals && (!question || strchr(question, '=') != equals);
   if (weighted) {
-    char *end;
-    share->weight = strtod(equals + 1, &end);
-    if (end == equals + 1 || *end || !(share->weight > 0.0) || share->weight > 1e6)
+    if (!vs_parse_real(equals + 1, &share->weight) || !(share->weight > 0.0) || share->weight > 1e6)
       return vs_fail(err, VS_USAGE, "opponent '%s': the weight must be a number above 0", word);
     length = (size_t)(equals - word);
   }

@@ -1,10 +1,10 @@
 #include "reward_mix.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "vsss/geom.h"
+#include "vsss/number.h"
 
 // Dense: each robot's own way to the ball, ball progress without the paper's constant offset, the paper's distance and
 // angles; goals worth some 50 decisions of good play. A trial with these learnt to beat random play in minutes, where
@@ -37,9 +37,8 @@ static vs_status change(const char *word, vs_reward_weights *out, vs_error *err)
   for (int t = 0; equals && t < VS_REWARD_TERMS; t++) {
     const char *name = vs_reward_name((vs_reward_term)t);
     if (strlen(name) != (size_t)(equals - word) || strncmp(name, word, strlen(name)) != 0) continue;
-    char *end;
-    double weight = strtod(equals + 1, &end);
-    if (end == equals + 1 || *end || !(weight >= -1000.0 && weight <= 1000.0))
+    double weight;
+    if (!vs_parse_real(equals + 1, &weight) || !(weight >= -1000.0 && weight <= 1000.0))
       return vs_fail(err, VS_USAGE, "reward '%s': the weight must be between -1000 and 1000", word);
     out->weight[t] = weight;
     return VS_OK;

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "vsss/field.h"
+#include "vsss/number.h"
 #include "vsss/world.h"
 
 static const char *const frame_names[VS_OBS_FRAME] = {
@@ -72,11 +73,12 @@ const char *vs_obs_name(int index) { return index >= 0 && index < VS_OBS_FRAME ?
 const char *vs_contract_text(void) {
   static _Thread_local char text[2048];
   int n = snprintf(text, sizeof text,
-                   "vsss contract %d; observation %d frames x %d, oldest first; x/%g y/%g distance/%g goal_distance/%g "
-                   "goal_x %g; action 2, left right in [-1,1] x %g rad/s, mean of Beta; decisions %d Hz; frame:",
-                   VS_CONTRACT_VERSION, VS_OBS_STACK, VS_OBS_FRAME, VS_OBS_SCALE_X_M, VS_OBS_SCALE_Y_M,
-                   VS_OBS_SCALE_DISTANCE_M, VS_OBS_SCALE_GOAL_DISTANCE_M, VS_OBS_GOAL_X_M, VS_WHEEL_LIMIT_RADPS,
-                   VS_DECISION_HZ);
+                   "vsss contract %d; observation %d frames x %d, oldest first; x/%s y/%s distance/%s goal_distance/%s "
+                   "goal_x %s; action 2, left right in [-1,1] x %s rad/s, mean of Beta; decisions %d Hz; frame:",
+                   VS_CONTRACT_VERSION, VS_OBS_STACK, VS_OBS_FRAME, vs_real_text(VS_OBS_SCALE_X_M).text,
+                   vs_real_text(VS_OBS_SCALE_Y_M).text, vs_real_text(VS_OBS_SCALE_DISTANCE_M).text,
+                   vs_real_text(VS_OBS_SCALE_GOAL_DISTANCE_M).text, vs_real_text(VS_OBS_GOAL_X_M).text,
+                   vs_real_text(VS_WHEEL_LIMIT_RADPS).text, VS_DECISION_HZ);
   for (int i = 0; i < VS_OBS_FRAME; i++) n += snprintf(text + n, sizeof text - (size_t)n, " %s", frame_names[i]);
   return text;
 }

@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "assert_near.h"
+#include "comma_locale.h"
 #include "vsss/number.h"
 
 static void real_numbers_are_finite_and_nothing_follows_them(void **state) {
@@ -48,11 +49,27 @@ static void seeds_have_64_bits(void **state) {
   assert_true(seed == 10);
 }
 
+static void the_point_is_a_point_in_every_locale(void **state) {
+  (void)state;
+  set_comma_locale();
+  double x = 7.0;
+  assert_true(vs_parse_real("0.5", &x));
+  assert_near(x, 0.5, 0);
+  assert_false(vs_parse_real("0,5", &x));
+  assert_string_equal(vs_real_text(46.66).text, "46.66");
+  assert_string_equal(vs_real_text(-1e-7).text, "-1e-07");
+  char text[16];
+  snprintf(text, sizeof text, "%g", 0.5);
+  assert_string_equal(text, "0,5"); // the program's own numbers stay as they were
+  setlocale(LC_ALL, "C");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(real_numbers_are_finite_and_nothing_follows_them),
       cmocka_unit_test(whole_numbers_fit_an_int),
       cmocka_unit_test(seeds_have_64_bits),
+      cmocka_unit_test(the_point_is_a_point_in_every_locale),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 // src/world/contract.c
 #include "assert_near.h"
+#include "comma_locale.h"
 #include "vsss/contract.h"
 
 #include <string.h>
@@ -31,11 +32,21 @@ static void hash_is_that_of_version_1(void **state) {
   assert_non_null(strstr(vs_contract_text(), "vsss contract 1;"));
 }
 
+static void hash_is_the_same_in_every_locale(void **state) {
+  (void)state;
+  set_comma_locale();
+  char hash[17];
+  snprintf(hash, sizeof hash, "%s", vs_contract_hash_hex());
+  setlocale(LC_ALL, "C");
+  assert_string_equal(hash, "4d7dbdb797302f31");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(layout_adds_up),
       cmocka_unit_test(every_value_has_a_name_of_its_own),
       cmocka_unit_test(hash_is_that_of_version_1),
+      cmocka_unit_test(hash_is_the_same_in_every_locale),
   };
   return cmocka_run_group_tests_name("world/contract", tests, NULL, NULL);
 }
