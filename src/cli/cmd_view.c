@@ -150,9 +150,9 @@ int cmd_view(int argc, char **argv) {
   if (s == VS_OK && !c.live) s = read_log(&c, words.value[0], &data, &size, &err);
   static char nothing[] = "{\"live\": true, \"frames\": []}";
   const char *shown = c.live ? nothing : data;
+  vs_cli_catch_interrupts(); // before anyone can see the page
   if (s == VS_OK) s = vs_view_open(page, shown, c.live ? strlen(nothing) : size, c.address, c.port, &c.view, &err);
   if (s == VS_OK) {
-    vs_cli_catch_interrupts();
     printf("the page is on port %d of %s (Ctrl-C ends)\n", c.port, c.address);
     fflush(stdout);
     int64_t until_us = vs_clock_monotonic_us() + (int64_t)(1e6 * c.seconds);

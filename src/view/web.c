@@ -66,6 +66,14 @@ static void on_close(const struct mg_connection *c, void *context) {
   pthread_mutex_unlock(&v->lock);
 }
 
+// The server answers from its start on, some time before it has its handlers: a request in between would find nothing.
+static int wait_for_handlers(struct mg_connection *c) {
+  vs_view *v = mg_get_user_data(mg_get_context(c));
+  pthread_mutex_lock(&v->lock);
+  pthread_mutex_unlock(&v->lock);
+  return 0; // on to the handlers
+}
+
 static vs_status read_page(vs_view *v, const char *path, vs_error *err) {
   FILE *f = fopen(path, "r");
   if (!f) return vs_fail(err, VS_FAIL, "%s: cannot be read", path);
@@ -86,10 +94,16 @@ vs_status vs_view_open(const char *page, const char *data, size_t data_size, con
   char where[64];
   snprintf(where, sizeof where, "%.40s:%d", address, port);
   const char *options[] = {"listening_ports", where, "num_threads", "8", "request_timeout_ms", "10000", NULL};
-  struct mg_callbacks callbacks = {0};
+  struct mg_callbacks callbacks = {.begin_request = wait_for_handlers};
   if (s == VS_OK) {
     mg_init_library(0);
+    pthread_mutex_lock(&v->lock);
     v->web = mg_start(&callbacks, v, options);
+    if (v->web) {
+      mg_set_request_handler(v->web, "/", on_page, v);
+      mg_set_websocket_handler(v->web, "/live", on_connect, on_ready, on_data, on_close, v);
+    }
+    pthread_mutex_unlock(&v->lock);
     if (!v->web) {
       mg_exit_library();
       s = vs_fail(err, VS_FAIL, "cannot serve on %s: in use? take another --port", where);
@@ -99,8 +113,6 @@ vs_status vs_view_open(const char *page, const char *data, size_t data_size, con
     vs_view_close(v);
     return s;
   }
-  mg_set_request_handler(v->web, "/", on_page, v);
-  mg_set_websocket_handler(v->web, "/live", on_connect, on_ready, on_data, on_close, v);
   *out = v;
   return VS_OK;
 }
