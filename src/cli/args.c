@@ -5,6 +5,8 @@
 #include "cli.h"
 #include "vsss/number.h"
 
+const char *vs_cli_program = "vsss";
+
 static void print_default(const vs_flag *f) {
   if (f->type == VS_FLAG_INT) printf(" [%d]", *(const int *)f->target);
   if (f->type == VS_FLAG_REAL) printf(" [%g]", *(const double *)f->target);
@@ -107,4 +109,28 @@ vs_status vs_cli_team(const char *flag, const char *name, vs_team *out, vs_error
       return VS_OK;
     }
   return vs_fail(err, VS_USAGE, "%s %s: expected blue or yellow", flag, name);
+}
+
+static void add(char *out, size_t size, char c) {
+  size_t used = strlen(out);
+  if (used + 1 < size) out[used] = c, out[used + 1] = '\0';
+}
+
+static void add_word(char *out, size_t size, const char *word) {
+  static const char *const plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
+  bool quoted = !*word || word[strspn(word, plain)];
+  if (*out) add(out, size, ' ');
+  if (quoted) add(out, size, '\'');
+  for (; *word; word++) {
+    if (*word == '\'') // ends the quotation, adds a quote, begins anew
+      add(out, size, '\''), add(out, size, '\\'), add(out, size, '\'');
+    add(out, size, *word);
+  }
+  if (quoted) add(out, size, '\'');
+}
+
+void vs_cli_command(const char *program, int argc, const char *const *argv, char *out, size_t size) {
+  out[0] = '\0';
+  add_word(out, size, program);
+  for (int i = 0; i < argc; i++) add_word(out, size, argv[i]);
 }

@@ -3,6 +3,7 @@
 #define VSSS_CLI_CLI_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "vsss/status.h"
 #include "vsss/world.h"
@@ -39,6 +40,11 @@ typedef struct vs_flag_list {
 // allowed). --help prints usage, synopsis and the flags, and sets *help: the command returns 0 at once.
 vs_status vs_args_parse(int argc, char **argv, const char *synopsis, const char *about, const vs_flag *flags,
                         vs_flag_list *positional, bool *help, vs_error *err);
+
+// How this program was called, such as ./vsss: for command lines to be pasted where it was.
+extern const char *vs_cli_program;
+// A command line of program and words, quoted where a shell needs it so.
+void vs_cli_command(const char *program, int argc, const char *const *argv, char *out, size_t size);
 
 // "blue" or "yellow"; flag names who gave it, in the error.
 vs_status vs_cli_team(const char *flag, const char *name, vs_team *out, vs_error *err);

@@ -1,4 +1,5 @@
 // vsss rig: a venue without hardware.
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -111,12 +112,19 @@ static void print_paths(const vs_rig *rig, const vs_rig_def *def, const char *co
   printf("camera  rig:%s  %dx%d, 30 pictures a second\n", vs_rig_camera_path(rig), def->width_px, def->height_px);
   printf("radio   %s\n", vs_rig_radio_path(rig));
   printf("calib   %s\n", vs_rig_calib_path(rig));
-  printf("play    vsss field --go --team %s --camera rig:%s --radio %s --calib %s", vs_team_name(def->team),
-         vs_rig_camera_path(rig), vs_rig_radio_path(rig), vs_rig_calib_path(rig));
-  if (def->own != VS_MARK_APRIL) printf(" --own-tags %s", vs_mark_name(def->own));
-  if (def->their != VS_MARK_PATCH) printf(" --their-tags %s", vs_mark_name(def->their));
-  if (config) printf(" --config %s", config);
-  printf("\n");
+  char camera[PATH_MAX + 8], line[4 * PATH_MAX];
+  snprintf(camera, sizeof camera, "rig:%s", vs_rig_camera_path(rig));
+  const char *words[16] = {"field",    "--go",
+                           "--team",   vs_team_name(def->team),
+                           "--camera", camera,
+                           "--radio",  vs_rig_radio_path(rig),
+                           "--calib",  vs_rig_calib_path(rig)};
+  int n = 10;
+  if (def->own != VS_MARK_APRIL) words[n++] = "--own-tags", words[n++] = vs_mark_name(def->own);
+  if (def->their != VS_MARK_PATCH) words[n++] = "--their-tags", words[n++] = vs_mark_name(def->their);
+  if (config) words[n++] = "--config", words[n++] = config;
+  vs_cli_command(vs_cli_program, n, words, line, sizeof line);
+  printf("play    %s\n", line);
   printf("%swaiting for the camera to be opened\n", note);
   fflush(stdout);
 }

@@ -255,7 +255,7 @@ static vs_status train(const train_options *o, int argc, char **argv, vs_error *
   if (o->average.count && !train_resumes_file(o))
     return vs_fail(err, VS_USAGE, "--average begins a new run: give --resume CHECKPOINT too, and --run FOLDER");
   snprintf(s.folder, sizeof s.folder, "%s", s.continued ? o->resume : o->run);
-  vs_run_folder_command(argc, argv, s.command, sizeof s.command);
+  vs_cli_command("vsss", argc, (const char *const *)argv, s.command, sizeof s.command);
   vs_train_def def;
   vs_status status = vs_cli_await_interrupts(announce_stop, save_now, &s, err);
   if (status == VS_OK) status = train_settings(o, &def, err);

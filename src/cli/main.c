@@ -79,6 +79,7 @@ static int help(int argc, char **argv) {
 int main(int argc, char **argv) {
   if (!vs_cli_begin()) return VS_USAGE;
   vs_cli_commit = VSSS_COMMIT;
+  if (argc > 0) vs_cli_program = argv[0];
   vs_cli_quiet_first_session();
   vs_player_register("lcm:", PLAYER_LCM_HELP, player_lcm_open);
   if (argc < 2) {

@@ -3,14 +3,13 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
-#include <stdbool.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "cli.h"
 #include "vsss/paths.h"
 
 static void host_name(char *out, size_t size) {
@@ -43,29 +42,6 @@ vs_status vs_run_folder_lock(const char *folder, vs_error *err) {
   return VS_OK;
 }
 
-static void add(char *out, size_t size, char c) {
-  size_t used = strlen(out);
-  if (used + 1 < size) out[used] = c, out[used + 1] = '\0';
-}
-
-static void add_word(char *out, size_t size, const char *word) {
-  static const char *const plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
-  bool quoted = !*word || word[strspn(word, plain)];
-  add(out, size, ' ');
-  if (quoted) add(out, size, '\'');
-  for (; *word; word++) {
-    if (*word == '\'') // ends the quotation, adds a quote, begins anew
-      add(out, size, '\''), add(out, size, '\\'), add(out, size, '\'');
-    add(out, size, *word);
-  }
-  if (quoted) add(out, size, '\'');
-}
-
-void vs_run_folder_command(int argc, char **argv, char *out, size_t size) {
-  snprintf(out, size, "vsss");
-  for (int i = 0; i < argc; i++) add_word(out, size, argv[i]);
-}
-
 vs_status vs_run_folder_note(const char *folder, const char *command, const char *commit, vs_error *err) {
   char path[PATH_MAX], when[64], host[128];
   time_t now = time(NULL);
@@ -80,23 +56,19 @@ vs_status vs_run_folder_note(const char *folder, const char *command, const char
   return fclose(f) == 0 ? VS_OK : vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
 }
 
-static void print_next(char *words[], int count, const char *about) {
+static void print_next(const char *const words[], int count, const char *about) {
   char line[2 * PATH_MAX];
-  vs_run_folder_command(count, words, line, sizeof line);
-  printf("  ./%-60s  %s\n", line, about);
+  vs_cli_command(vs_cli_program, count, words, line, sizeof line);
+  printf("  %-62s  %s\n", line, about);
 }
 
 void vs_run_folder_next(const char *folder, double limit_m) {
-  char policy[PATH_MAX + 32], limit[32], eval[] = "eval", blue[] = "--blue", plot[] = "plot", train[] = "train",
-                                         resume[] = "--resume", transitions[] = "--transitions";
-  char *name = strdup(folder);
-  if (!name) return;
+  char policy[PATH_MAX + 32], limit[32];
   snprintf(policy, sizeof policy, "onnx:%s/policy.onnx", folder);
   snprintf(limit, sizeof limit, "%.6g", 2.0 * limit_m);
   printf("next:\n");
-  print_next((char *[]){eval, blue, policy}, 3, "how it plays");
-  print_next((char *[]){plot, name}, 2, "how it learnt");
-  print_next((char *[]){train, resume, name, transitions, limit}, limit_m > 0.0 ? 5 : 3,
+  print_next((const char *[]){"eval", "--blue", policy}, 3, "how it plays");
+  print_next((const char *[]){"plot", folder}, 2, "how it learnt");
+  print_next((const char *[]){"train", "--resume", folder, "--transitions", limit}, limit_m > 0.0 ? 5 : 3,
              limit_m > 0.0 ? "learns on, to another limit" : "learns on");
-  free(name);
 }

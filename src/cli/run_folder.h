@@ -9,8 +9,6 @@
 // Makes the folder where it is not there and locks it for as long as this process lives: lock holds who has it, and a
 // second training is refused with that.
 vs_status vs_run_folder_lock(const char *folder, vs_error *err);
-// The command line, quoted where a shell needs it so.
-void vs_run_folder_command(int argc, char **argv, char *out, size_t size);
 // Adds to folder/history.txt when and where this program was started, its commit and the command line.
 vs_status vs_run_folder_note(const char *folder, const char *command, const char *commit, vs_error *err);
 // Prints the commands that may come next, to be pasted; limit_m: of a run that has reached it, else 0.

@@ -92,6 +92,26 @@ static void so_does_one_with_a_distorting_lens_and_a_slow_shutter(void **state) 
   see_the_kick_off("--team yellow --opponent zero: --lens -0.25 --exposure 8");
 }
 
+// By a shell, from where the rig was started; the folder's name needs quotes.
+static void the_play_line_can_be_pasted(void **state) {
+  (void)state;
+  char plain[sizeof venue], line[4096], out[128];
+  memcpy(plain, venue, sizeof plain);
+  snprintf(venue, sizeof venue, "'%s/it is ours'", folder);
+  pid_t rig = start_rig("");
+  memcpy(venue, plain, sizeof plain);
+  if (!rig) return;
+  const char *play = strstr(read_text(log_path), "\nplay ");
+  assert_non_null(play);
+  play += strlen("\nplay ");
+  snprintf(out, sizeof out, "%s/played", folder);
+  snprintf(line, sizeof line, "%.*s --no-lcm --seconds 1 >%s 2>&1 </dev/null", (int)strcspn(play, "\n"), play, out);
+  int status = system(line);
+  if (status != 0) fail_msg("%s: %s", line, read_text(out));
+  kill(rig, SIGINT);
+  assert_int_equal(vsss_wait(rig, 10), 0);
+}
+
 static void the_robots_obey_the_radio_and_report(void **state) {
   (void)state;
   pid_t rig = start_rig("--opponent zero:");
@@ -350,6 +370,7 @@ int main(void) {
       cmocka_unit_test(a_folder_that_cannot_be_made_is_named),
       cmocka_unit_test(the_camera_shows_the_kick_off_where_the_calibration_says),
       cmocka_unit_test(so_does_one_with_a_distorting_lens_and_a_slow_shutter),
+      cmocka_unit_test(the_play_line_can_be_pasted),
       cmocka_unit_test(the_robots_obey_the_radio_and_report),
       cmocka_unit_test(the_other_team_waits_for_its_commands_as_long_as_ours),
       cmocka_unit_test(files_that_no_rig_left_are_kept_and_named),

@@ -160,9 +160,12 @@ static void any_file_name_and_any_seed_survive_a_resume(void **state) {
 // As the README's command does with the checkpoint that comes with vsss.
 static void a_checkpoint_that_is_done_trains_on_and_says_how_far(void **state) {
   (void)state;
+  char binary[4096], next[4400];
   train("train --run %s/f " SMALL "--transitions 0.0003 --slim %s/done");
   assert_non_null(strstr(run.out, "/f --transitions 0.0006"));
-  assert_non_null(strstr(run.out, "./vsss eval --blue onnx:"));
+  vsss_binary(binary, sizeof binary); // as this program was called
+  snprintf(next, sizeof next, "  %s eval --blue onnx:%s/f/policy.onnx", binary, folder);
+  assert_non_null(strstr(run.out, next));
   train("train --run %s/g --resume %s/done --minutes 0.0001");
   assert_non_null(strstr(run.out, "has reached its limit of 0.0003 M transitions: going on to 60.0006 M"));
   assert_non_null(strstr(run.out, "stopped at"));
