@@ -12,8 +12,10 @@ $(shell mkdir -p build/gen; line='#define VSSS_COMMIT "$(COMMIT)"'; \
 # Said here: -MMD leaves out what lies in a folder of -isystem.
 $(B)/src/cli/main.o: build/gen/vsss_commit.h
 
-FEATURES := LCM APRILTAG OPENCV EGL ONNXRUNTIME ONEDNN OPENBLAS TORCH MPI
+# What deploy/probe.sh looks for, but for physics, which is always there, and for the tests' own library.
+FEATURES := $(filter-out MUJOCO CMOCKA,$(shell sed 's/ .*//' build/features.txt))
 list = $(shell echo '$(strip $(1))' | sed 's/ /, /g' | tr 'A-Z' 'a-z')
+$(B)/src/cli/version.o: deploy/version.mk
 $(B)/src/cli/version.o: CFLAGS_ALL += \
   -DVSSS_FEATURES='"$(call list,$(foreach f,$(FEATURES),$(if $(HAVE_$(f)),$(f))))"' \
   -DVSSS_MISSING='"$(call list,$(foreach f,$(FEATURES),$(if $(HAVE_$(f)),,$(f))))"'

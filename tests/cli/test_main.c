@@ -1,4 +1,6 @@
 // src/cli/main.c, src/cli/args.c and src/cli/version.c, through the real binary
+#include <ctype.h>
+
 #include "assert_near.h"
 #include "run_vsss.h"
 #include "vsss/sim.h"
@@ -71,6 +73,29 @@ static void version_names_release_commit_and_libraries(void **state) {
   assert_non_null(strstr(run.out, "built with: "));
 }
 
+// Every feature that deploy/probe.sh looks for is told, on the line where it belongs.
+static void version_names_every_feature(void **state) {
+  (void)state;
+  static vsss_run run;
+  char line[256], name[32], found[16], with[512] = "", without[512] = "";
+  vsss(&run, "--version");
+  const char *at = strstr(run.out, "built with: ");
+  assert_non_null(at);
+  sscanf(at, "built with: %511[^\n]", with);
+  if ((at = strstr(run.out, "built without: "))) sscanf(at, "built without: %511[^\n]", without);
+  FILE *features = fopen("build/features.txt", "r");
+  assert_non_null(features);
+  int count = 0;
+  while (fgets(line, sizeof line, features) && sscanf(line, "%31s %15s", name, found) == 2) {
+    if (!strcmp(name, "MUJOCO") || !strcmp(name, "CMOCKA")) continue;
+    for (char *c = name; *c; c++) *c = (char)tolower((unsigned char)*c);
+    if (!strstr(strcmp(found, "found") ? without : with, name)) fail_msg("no %s in: %s", name, run.out);
+    count++;
+  }
+  fclose(features);
+  assert_true(count > 8);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(unknown_command_is_named_with_status_2),
@@ -79,6 +104,7 @@ int main(void) {
       cmocka_unit_test(help_of_a_command_is_its_own_help),
       cmocka_unit_test(a_slip_of_one_letter_is_told_what_was_meant),
       cmocka_unit_test(version_names_release_commit_and_libraries),
+      cmocka_unit_test(version_names_every_feature),
   };
   return cmocka_run_group_tests_name("cli/main", tests, NULL, NULL);
 }
