@@ -57,11 +57,11 @@ trainer() {
     awk '/^reward per decision/ {gsub(",", ""); exit !($10 > $7 + 0.001)}' said_train
 }
 plugin() {
-  make -s -C "$root/examples/plugin" VSSS_INCLUDE="$prefix/include" && cd "$root" &&
+  make -s -C "$root/examples/plugin" && cd "$root" &&
     "$prefix/bin/vsss" sim --seconds 10 --blue plugin:examples/plugin/team.so --yellow zero:
 }
 player() {
-  make -s -C "$root/examples/lcm" VSSS_TYPES="$prefix/share/vsss/lcm_types" && cd "$root" || return 1
+  make -s -C "$root/examples/lcm" && cd "$root" || return 1
   url="udpm://239.255.76.67:$((20000 + $$ % 20000))?ttl=0"
   examples/lcm/player yellow "$url" &
   started=$!
@@ -107,15 +107,20 @@ check install install_all
 copy_examples
 check program program
 check help_files help_files
-check plugin plugin
 if [ "$(command -v pkg-config)" ]; then
+  check plugin plugin
   check vecenv vecenv
   check trainer trainer
 else
+  skip plugin "no pkg-config (apt install pkgconf)"
   skip vecenv "no pkg-config (apt install pkgconf)"
   skip trainer "no pkg-config (apt install pkgconf)"
 fi
-if [ "$(command -v lcm-gen)" ]; then check player player; else skip player "no lcm-gen (apt install liblcm-bin)"; fi
+if [ "$(command -v lcm-gen)" ] && [ "$(command -v pkg-config)" ]; then
+  check player player
+else
+  skip player "no lcm-gen or no pkg-config (apt install liblcm-bin pkgconf)"
+fi
 if [ "$(command -v cmake)" ]; then check cmake cmake_package; else skip cmake "no cmake"; fi
 [ -n "$only" ] || check uninstall uninstall
 exit $bad
