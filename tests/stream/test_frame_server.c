@@ -2,10 +2,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <signal.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "assert_near.h"
+#include "stream/frame_wire.h"
 #include "vsss/clock.h"
 #include "vsss/frame_stream.h"
 
@@ -153,6 +158,61 @@ static void no_server_is_an_error_that_says_how_to_start_one(void **state) {
   assert_non_null(strstr(err.text, "vsss rig"));
 }
 
+// A process in the rig's place that sends `bytes`, then `again` for ever, every pause_us.
+static pid_t start_impostor(const void *bytes, size_t count, const void *again, size_t size, int pause_us) {
+  struct sockaddr_un address = {.sun_family = AF_UNIX};
+  snprintf(address.sun_path, sizeof address.sun_path, "%s", path);
+  int listener = socket(AF_UNIX, SOCK_STREAM, 0);
+  assert_int_equal(bind(listener, (struct sockaddr *)&address, sizeof address), 0);
+  assert_int_equal(listen(listener, 1), 0);
+  pid_t child = fork();
+  if (child == 0) {
+    alarm(60);
+    int viewer = accept(listener, NULL, NULL);
+    bool sent = write(viewer, bytes, count) == (ssize_t)count;
+    while (sent && write(viewer, again, size) == (ssize_t)size)
+      if (pause_us) usleep((useconds_t)pause_us);
+    _exit(0);
+  }
+  close(listener);
+  return child;
+}
+
+static void end_impostor(pid_t child) {
+  kill(child, SIGKILL);
+  waitpid(child, NULL, 0);
+  unlink(path);
+}
+
+// At that pace a picture would take 20 minutes.
+static void bytes_that_trickle_hold_nobody_up(void **state) {
+  (void)state;
+  const vs_wire_hello hello = {.magic = VS_WIRE_HELLO, .width_px = W, .height_px = H, .fps = 30};
+  struct {
+    vs_wire_hello hello;
+    vs_wire_frame frame;
+  } begin = {hello, {.magic = VS_WIRE_FRAME, .seq = 1}};
+  vs_camera *camera;
+  vs_frame frame;
+  vs_camera_got got = VS_CAMERA_FRAME;
+  pid_t child = start_impostor(&begin, sizeof begin, "", 1, 5000);
+  alarm(60); // who waits for the rest ends here
+  assert_ok(vs_camera_open(source, NULL, &camera, err));
+  for (int i = 0; i < 5; i++) {
+    assert_ok(vs_camera_read(camera, 50, &frame, &got, err));
+    assert_int_equal(got, VS_CAMERA_TIMEOUT);
+  }
+  vs_camera_close(camera);
+  end_impostor(child);
+
+  vs_error err = {0};
+  child = start_impostor(&hello, 4, &hello.width_px, 1, 200000); // the hello itself: 4 s
+  assert_int_equal(vs_camera_open(source, NULL, &camera, &err), VS_FAIL);
+  assert_non_null(strstr(err.text, "busy"));
+  end_impostor(child);
+  alarm(0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_picture_arrives_whole_with_its_stamp_and_number),
@@ -161,6 +221,7 @@ int main(void) {
       cmocka_unit_test(a_server_that_goes_away_is_an_error_of_the_camera),
       cmocka_unit_test(a_second_server_in_the_same_place_is_refused_and_a_dead_one_replaced),
       cmocka_unit_test(no_server_is_an_error_that_says_how_to_start_one),
+      cmocka_unit_test(bytes_that_trickle_hold_nobody_up),
   };
   return cmocka_run_group_tests_name("stream/frame_server", tests, make_folder, remove_folder);
 }
