@@ -9,14 +9,15 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "vsss/radio_link.h"
 #include "vsss/world.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-// A command from a frame older than this is none: one and a half decision periods.
-#define VS_SAFETY_STALE_US 150000
+// A command from a frame older than this is none: one and a half decision periods, as long as the radio repeats one.
+#define VS_SAFETY_STALE_US VS_RADIO_STALE_US
 
 typedef enum vs_safety_state {
   VS_SAFETY_UNARMED,  // nobody has said that the robots may move

@@ -9,8 +9,7 @@
 #include "vsss/geom.h"
 #include "vsss/unseen.h"
 
-#define FRAMES_PER_S 30.0
-#define NEAR_WALL_M  0.1 // detections are lost twice as often there: light falls off, walls throw shadows
+#define NEAR_WALL_M 0.1 // detections are lost twice as often there: light falls off, walls throw shadows
 
 static double draw(vs_rng *rng, vs_range range) { return vs_rng_range(rng, range.low, range.high); }
 
@@ -114,7 +113,7 @@ static bool lost(vs_sensors *s, const vs_pitch *field, int object, double x_m, d
 
 // Since the last detection; for ever where there was none since a placement.
 static int64_t since_us(const vs_sensors *s, int object) {
-  return s->filtering[object] ? llround(1e6 / FRAMES_PER_S * s->held_frames[object]) : INT64_MAX;
+  return s->filtering[object] ? llround(1e6 / VS_CAMERA_HZ * s->held_frames[object]) : INT64_MAX;
 }
 
 void vs_sensors_restart(vs_sensors *s) {
@@ -138,7 +137,7 @@ static void filter(vs_sensors *s, int object, const double value[3], double acce
       vs_kalman_start(f, value[k], noise[k], unknown_rate[k]);
       continue;
     }
-    for (int frame = 0; frame <= s->held_frames[object]; frame++) vs_kalman_predict(f, 1.0 / FRAMES_PER_S, change[k]);
+    for (int frame = 0; frame <= s->held_frames[object]; frame++) vs_kalman_predict(f, 1.0 / VS_CAMERA_HZ, change[k]);
     double innovation = value[k] - f->value;
     vs_kalman_update(f, k == 2 ? vs_wrap_rad(innovation) : innovation, noise[k]);
   }
@@ -217,7 +216,7 @@ void vs_sensors_command(vs_sensors *s, const vs_wheels in[VS_TEAMS][VS_TEAM_MOST
     if (out_of_sight(s, i)) s->queue[0][i / VS_TEAM_MOST][i % VS_TEAM_MOST] = (vs_wheels){0, 0};
   double latency_s = s->latency_s;
   if (s->latency_jitter_s > 0) latency_s += vs_rng_range(&s->rng, -s->latency_jitter_s, s->latency_jitter_s);
-  double frames = vs_clamp(latency_s * FRAMES_PER_S, 0, VS_SENSOR_DELAY_FRAMES - 1.001);
+  double frames = vs_clamp(latency_s * VS_CAMERA_HZ, 0, VS_SENSOR_DELAY_FRAMES - 1.001);
   int whole = (int)frames;
   for (int team = 0; team < VS_TEAMS; team++) {
     if (s->radio_loss > 0 && s->radio_lost_frames[team] == 0 && vs_rng_uniform(&s->rng) < s->radio_loss) {
