@@ -1,5 +1,4 @@
 // vsss train: PPO self-play.
-#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <pthread.h>
@@ -15,6 +14,7 @@
 #include "train_options.h"
 #include "train_text.h"
 #include "vsss/clock.h"
+#include "vsss/file.h"
 #include "vsss/journal.h"
 #include "vsss/learn.h"
 #include "vsss/number.h"
@@ -243,8 +243,8 @@ static vs_status prepare(session *s, const vs_train_def *def, vs_error *err) {
   char text[VS_TRAIN_TEXT_MAX];
   snprintf(path, sizeof path, "%s/settings.ini", s->folder);
   vs_train_def_text(vs_train_settings(s->train), true, text, sizeof text);
-  FILE *f = fopen(path, "w");
-  if (!f || fputs(text, f) == EOF || fclose(f) != 0) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
+  status = vs_file_replace(path, text, strlen(text), err);
+  if (status != VS_OK) return status;
   return vs_journal_open(s->folder, vs_train_updates(s->train), &s->journal, err);
 }
 
