@@ -49,8 +49,8 @@ int vs_render_overlay(const mjrContext *context, mjrRect picture, const vs_game 
   label(&l, (mjrRect){middle - gap / 2 - width, top, width, unit}, text, team_rgb[VS_BLUE], ink);
   snprintf(text, sizeof text, "%d", game->score[VS_YELLOW]);
   label(&l, (mjrRect){middle + gap / 2, top, width, unit}, text, team_rgb[VS_YELLOW], board);
-  // As sports show it: the time played.
-  int played = (int)floor(game->time_s);
+  // As sports show it: the time played, which is a sum of frames and may lack some nanoseconds of a whole second.
+  int played = (int)floor(game->time_s + 0.5 / VS_CAMERA_HZ);
   snprintf(text, sizeof text, "%d:%02d", played / 60, played % 60);
   label(&l, (mjrRect){middle - gap / 2, top, gap, unit}, text, board, ink);
 

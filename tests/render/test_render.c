@@ -173,6 +173,13 @@ static void the_broadcast_shows_score_clock_and_caption(void **state) {
   assert_ok(vs_render_world(r, &w, &game, later, err));
   int clock = differing(with, later, pixels);
   assert_true(clock > 0 && clock < 400); // one digit
+  game.time_s = 66 - 1e-9;               // as sums of frames come out
+  assert_ok(vs_render_world(r, &w, &game, with, err));
+  assert_int_equal(differing(with, later, pixels), 0);
+  game.time_s = 66 - 1.0 / VS_CAMERA_HZ; // the frame before
+  assert_ok(vs_render_world(r, &w, &game, with, err));
+  assert_int_equal(differing(with, later, pixels), clock);
+  game.time_s = 66;
   game.last_event = (vs_event){.kind = VS_EVENT_GOAL, .team = VS_YELLOW, .time_s = 65.5};
   assert_ok(vs_render_world(r, &w, &game, with, err));
   assert_true(differing(with, later, pixels) > 500); // the caption
