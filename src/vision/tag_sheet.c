@@ -17,6 +17,7 @@ enum { PAGE_W = 210, PAGE_H = 297, MARGIN = 12, GAP = 10, MOST_TAGS = 64 };
 typedef void paint_fn(void *to, double x_mm, double y_mm, double w_mm, double h_mm, const uint8_t rgb[3]);
 
 static const uint8_t black[3] = {0, 0, 0}, white[3] = {255, 255, 255};
+static const char bar_text[] = "100 mm: measure it after printing, at 100 %, cut along the grey lines";
 
 typedef struct sheet {
   const char *family;
@@ -127,7 +128,7 @@ static void pdf_page(FILE *f, const sheet *s) {
     pdf_text(f, x - s->margin_mm, y + s->paper_mm + s->margin_mm + 4, text);
   }
   pdf_rectangle(f, MARGIN, PAGE_H - 9, 100, 1, black);
-  pdf_text(f, MARGIN + 102, PAGE_H - 8, "100 mm: measure it after printing, at 100 %; cut along the grey lines");
+  pdf_text(f, MARGIN + 102, PAGE_H - 8, bar_text);
 }
 
 static bool write_pdf(FILE *f, const sheet *s) {
@@ -170,12 +171,50 @@ static void png_rectangle(void *to, double x, double y, double w, double h, cons
   }
 }
 
+// Its upper left corner at a place of the page, as large as its width allows, at most 1.8 mm high.
+static void png_text(uint8_t *bgr, double x_mm, double y_mm, double width_mm, const char *text) {
+  const double dots = DOTS_W / (double)PAGE_W;
+  vs_image page = {bgr, DOTS_W, DOTS_H, 3 * DOTS_W};
+  int dot_px = (int)(width_mm * dots / (6.0 * (double)strlen(text)));
+  vs_image_text(&page, (int)lround(x_mm * dots), (int)lround(y_mm * dots),
+                dot_px < 1   ? 1
+                : dot_px > 3 ? 3
+                             : dot_px,
+                text, black);
+}
+
+// As in the PDF; the line to cut along lies just outside of the mark, in dashes: a closed one would be a mark's border to `detect`.
+static void png_outline(uint8_t *bgr, const sheet *s, int i) {
+  static const uint8_t grey[3] = {153, 153, 153};
+  const double line = 0.2, dash = 2, side = s->paper_mm + 2 * s->margin_mm;
+  double x, y;
+  char text[128];
+  place(s, i, &x, &y);
+  x -= s->margin_mm, y -= s->margin_mm;
+  for (double along = 0; along < side; along += 2 * dash) {
+    double length = fmin(dash, side - along);
+    png_rectangle(bgr, x + along, y - line, length, line, grey);
+    png_rectangle(bgr, x + along, y + side, length, line, grey);
+    png_rectangle(bgr, x - line, y + along, line, length, grey);
+    png_rectangle(bgr, x + side, y + along, line, length, grey);
+  }
+  for (double up = 1; up < 4; up += line) // an arrow head, 4 mm wide where it begins
+    png_rectangle(bgr, x + 0.5 * side - (4 - up) * 2 / 3, y - up - line, (4 - up) * 4 / 3, line, grey);
+  png_text(bgr, x + 0.5 * side + 3, y - 3, 20, "front");
+  caption(s, i, text, sizeof text);
+  png_text(bgr, x, y + side + 1.5, side, text);
+}
+
 static vs_status write_png(const char *path, const sheet *s, vs_error *err) {
   uint8_t *bgr = malloc(3 * (size_t)DOTS_W * DOTS_H);
   if (!bgr) return vs_fail(err, VS_FAIL, "%s: out of memory", path);
   memset(bgr, 255, 3 * (size_t)DOTS_W * DOTS_H);
-  for (int i = 0; i < s->count; i++) paint_tag(s, i, png_rectangle, bgr);
+  for (int i = 0; i < s->count; i++) {
+    paint_tag(s, i, png_rectangle, bgr);
+    png_outline(bgr, s, i);
+  }
   png_rectangle(bgr, MARGIN, PAGE_H - 9, 100, 1, black);
+  png_text(bgr, MARGIN + 102, PAGE_H - 9.5, PAGE_W - 2 * MARGIN - 102, bar_text);
   vs_status status = vs_image_save(path, bgr, 3 * DOTS_W, DOTS_W, DOTS_H, err);
   free(bgr);
   return status;
@@ -196,6 +235,9 @@ static vs_status lay_out(sheet *s, const char *family, const int *ids, int count
     return vs_fail(err, VS_USAGE, "tags of %g mm: allowed are 10 to %d", s->paper_mm, PAGE_W - 2 * MARGIN);
   if (!strcmp(family, VS_TAG_ARUCO)) s->margin_mm = s->paper_mm * VS_ARUCO_MARGIN_M / VS_ARUCO_SIDE_M;
   if (is_plate(s)) s->margin_mm = s->paper_mm * 0.5 * (VS_ROBOT_SIZE_M / VS_PLATE_SIDE_M - 1);
+  if (s->paper_mm + 2 * s->margin_mm > PAGE_W - 2 * MARGIN)
+    return vs_fail(err, VS_USAGE, "marks of %g mm are %.0f mm wide with their margin: a sheet holds %d mm", s->paper_mm,
+                   s->paper_mm + 2 * s->margin_mm, PAGE_W - 2 * MARGIN);
   s->columns = (int)((PAGE_W - 2 * MARGIN + GAP) / (s->paper_mm + 2 * s->margin_mm + GAP));
   s->rows = (int)((PAGE_H - MARGIN - 16 + GAP) / (s->paper_mm + 2 * s->margin_mm + GAP)); // 16: a caption, the bar
   if (s->columns == 0) s->columns = 1;

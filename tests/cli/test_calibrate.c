@@ -7,6 +7,8 @@
 #include "vision/board.h"
 #include "vision/scene.h"
 #include "vsss/calib.h"
+#include "vsss/camera.h"
+#include "vsss/field.h"
 
 static char folder[] = "/tmp/vsss_calibrate_XXXXXX";
 static char arguments[1024];
@@ -140,6 +142,42 @@ static void printed_tags_are_read_back_at_true_size(void **state) {
   assert_string_equal(head, "%PDF-1.4");
 }
 
+static double dark_share(const vs_frame *f, double x_mm, double y_mm, double w_mm, double h_mm) {
+  const double dots = 300 / 25.4;
+  int dark = 0, all = 0;
+  for (int y = (int)(y_mm * dots); y < (int)((y_mm + h_mm) * dots); y++)
+    for (int x = (int)(x_mm * dots); x < (int)((x_mm + w_mm) * dots); x++, all++)
+      dark += f->grey[y * f->grey_stride + x] < 200;
+  return (double)dark / all;
+}
+
+// Around a tag of 78 mm at (12, 12) mm: an arrow head above it, a line around it, its number below, and words beside the bar.
+static void a_sheet_as_a_picture_tells_what_the_pdf_tells(void **state) {
+  (void)state;
+  static vsss_run run;
+  for (int colour = 0; colour < 2; colour++) {
+    vsss(&run, in_folder(colour ? "calibrate --print-tags 123 --family colour --paper-mm 65 --out %s/sheet.png"
+                                : "calibrate --print-tags 0 --out %s/sheet.png"));
+    assert_int_equal(run.status, 0);
+    vs_camera *camera;
+    vs_frame f;
+    vs_camera_got got;
+    assert_ok(vs_camera_open(in_folder("%s/sheet.png"), NULL, &camera, err));
+    assert_ok(vs_camera_read(camera, 1000, &f, &got, err));
+    assert_int_equal(got, VS_CAMERA_FRAME);
+    // A plate's black ground is as wide as a robot.
+    double side = colour ? 1000 * VS_ROBOT_SIZE_M : 78, middle = 12 + side / 2;
+    assert_near(dark_share(&f, middle - 0.5, 9, 1, 1.5), 1, 0.05); // the arrow
+    assert_near(dark_share(&f, middle - 3, 9, 1, 1.5), 0, 0);      // none beside it
+    assert_true(dark_share(&f, middle + 3, 9, 10, 2) > 0.1);       // "front"
+    assert_near(dark_share(&f, 11.85, 20, 0.12, 20), 0.5, 0.05);   // the line to cut along, in dashes
+    assert_near(dark_share(&f, 11.5, 20, 0.2, 20), 0, 0);
+    assert_true(dark_share(&f, 12, 12 + side + 1.5, 30, 1.2) > 0.1); // the caption
+    assert_true(dark_share(&f, 114, 287.5, 60, 1.2) > 0.1);          // how long the bar is
+    vs_camera_close(camera);
+  }
+}
+
 // On a printed sheet of plates: learnt colours go into the configuration that detect then reads.
 static void colours_are_learnt_from_points_and_saved_for_the_field(void **state) {
   (void)state;
@@ -197,6 +235,8 @@ static void the_example_of_points_makes_a_calibration(void **state) {
 
 static void bad_requests_are_one_line_with_the_fix(void **state) {
   (void)state;
+  assert_refused("calibrate --print-tags 256 --family aruco --paper-mm 186 --out /tmp/none.png", 2,
+                 "with their margin");
   FILE *f = create("broken.txt");
   fputs("1 2 0.1 0.1\n3 4 x 0.2\n", f);
   fclose(f);
@@ -232,6 +272,7 @@ int main(void) {
       cmocka_unit_test(points_are_checked_against_a_calibration),
       cmocka_unit_test(a_snapshot_is_saved),
       cmocka_unit_test(printed_tags_are_read_back_at_true_size),
+      cmocka_unit_test(a_sheet_as_a_picture_tells_what_the_pdf_tells),
       cmocka_unit_test(colours_are_learnt_from_points_and_saved_for_the_field),
       cmocka_unit_test(a_folder_of_checkerboard_pictures_gives_the_lens),
       cmocka_unit_test(the_example_of_points_makes_a_calibration),
