@@ -38,6 +38,8 @@ typedef struct vs_config_key {
 // value as it must be written in a file; needs up to 2 * strlen(value) + 3 bytes.
 void vs_config_quote(const char *value, char *out, size_t size);
 
+#define VS_CONFIG_FILE_MAX (1 << 20) // bytes: a larger file, or a device that never ends, is none of settings
+
 // A schema ends with a row whose name is NULL. On an error no further key is read; keys read so far are set.
 vs_status vs_config_load(const char *path, const vs_config_key *schema, vs_error *err);
 vs_status vs_config_parse(const char *name_for_errors, const char *text, const vs_config_key *schema, vs_error *err);

@@ -193,28 +193,25 @@ vs_status vs_config_parse(const char *name_for_errors, const char *text, const v
 vs_status vs_config_load(const char *path, const vs_config_key *schema, vs_error *err) {
   FILE *f = fopen(path, "rb");
   if (!f) return vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno));
-  char *text = NULL;
-  size_t used = 0, size = 0;
-  for (;;) {
-    if (used + 4096 > size) {
-      size = size ? 2 * size : 8192;
-      char *grown = realloc(text, size);
-      if (!grown) {
-        free(text);
-        fclose(f);
-        return vs_fail(err, VS_FAIL, "%s: out of memory", path);
-      }
-      text = grown;
-    }
-    size_t n = fread(text + used, 1, size - used - 1, f);
-    used += n;
-    if (n == 0) break;
+  char *text = malloc(VS_CONFIG_FILE_MAX + 1);
+  if (!text) {
+    fclose(f);
+    return vs_fail(err, VS_FAIL, "%s: out of memory", path);
   }
-  int failed = ferror(f);
+  size_t used = fread(text, 1, VS_CONFIG_FILE_MAX + 1, f);
+  int failed = ferror(f) ? errno : 0;
   fclose(f);
-  text[used] = '\0';
-  vs_status s =
-      failed ? vs_fail(err, VS_FAIL, "%s: %s", path, strerror(errno)) : vs_config_parse(path, text, schema, err);
+  vs_status s = VS_OK;
+  if (failed)
+    s = vs_fail(err, VS_FAIL, "%s: %s", path, strerror(failed));
+  else if (used > VS_CONFIG_FILE_MAX)
+    s = vs_fail(err, VS_USAGE, "%s: more than %d bytes: not a file of settings", path, VS_CONFIG_FILE_MAX);
+  else if (memchr(text, 0, used))
+    s = vs_fail(err, VS_USAGE, "%s: holds a zero byte: not a text file", path);
+  if (s == VS_OK) {
+    text[used] = '\0';
+    s = vs_config_parse(path, text, schema, err);
+  }
   free(text);
   return s;
 }

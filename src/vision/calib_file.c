@@ -154,6 +154,10 @@ vs_status vs_calib_load_points(const char *path, vs_calib_point *out, int capaci
   char text[512];
   vs_status s = VS_OK;
   for (int line = 1; s == VS_OK && fgets(text, sizeof text, f); line++) {
+    if (!strchr(text, '\n') && !feof(f)) {
+      s = vs_fail(err, VS_USAGE, "%s:%d: line longer than %zu characters", path, line, sizeof text - 2);
+      break;
+    }
     text[strcspn(text, "#")] = '\0';
     if (!text[strspn(text, " \t\r\n")]) continue;
     if (*count == capacity)

@@ -3,7 +3,9 @@
 #include "vsss/config.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct settings {
   int envs;
@@ -107,6 +109,21 @@ static void missing_file_is_named(void **state) {
   assert_non_null(strstr(err.text, "no/such.ini: No such file"));
 }
 
+static void what_is_no_text_file_is_refused(void **state) {
+  (void)state;
+  vs_error err = {0};
+  assert_int_equal(vs_config_load("/dev/zero", schema, &err), VS_USAGE); // it would be read until memory is full
+  assert_non_null(strstr(err.text, "/dev/zero: more than 1048576 bytes"));
+  char path[] = "/tmp/vsss_config_XXXXXX";
+  int file = mkstemp(path);
+  static const char text[] = "name = a\n\0name = b\n"; // what follows the zero would not be read
+  assert_int_equal(write(file, text, sizeof text - 1), sizeof text - 1);
+  close(file);
+  assert_int_equal(vs_config_load(path, schema, &err), VS_USAGE);
+  unlink(path);
+  assert_non_null(strstr(err.text, "holds a zero byte"));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sections_comments_and_all_types_are_read),
@@ -117,6 +134,7 @@ int main(void) {
       cmocka_unit_test(a_key_sign_in_a_comment_is_no_key),
       cmocka_unit_test(assignment_sets_a_key),
       cmocka_unit_test(missing_file_is_named),
+      cmocka_unit_test(what_is_no_text_file_is_refused),
   };
   return cmocka_run_group_tests_name("base/config", tests, NULL, NULL);
 }

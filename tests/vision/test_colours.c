@@ -75,6 +75,11 @@ static void bad_points_are_refused_with_their_place(void **state) {
   assert_non_null(strstr(why.text, ":2:"));
   assert_non_null(strstr(why.text, "purple"));
   assert_int_equal(load("# nothing\n", points, &count, &why), VS_USAGE);
+  char comment[300]; // its second half would have been read as a point
+  memset(comment, '#', sizeof comment);
+  snprintf(comment + 255, sizeof comment - 255, "10 10 ball\n");
+  assert_int_equal(load(comment, points, &count, &why), VS_USAGE);
+  assert_non_null(strstr(why.text, ":1: line longer than 254 characters"));
   vs_detector_def def = vs_detector_def_default();
   points[0] = (vs_colour_point){79, 10, VS_COLOUR_BALL};
   assert_int_equal(vs_colours_learn(&frame, points, 1, &def, &why), VS_USAGE);
