@@ -225,10 +225,13 @@ static void print_cross_table(const eval_command *c) {
   printf("win/draw/loss %% and score of the row as blue against the column as yellow; Elo with its 95 %% "
          "interval\n\n%-16s",
          "");
-  for (int j = 0; j < c->players; j++) printf("  %-18.18s", name_of(c, j));
+  for (int j = 0; j < c->players; j++) {
+    printf("  ");
+    vs_report_name(stdout, name_of(c, j), 18);
+  }
   printf("  %12s\n", "Elo");
   for (int i = 0; i < c->players; i++) {
-    printf("%-16.16s", name_of(c, i));
+    vs_report_name(stdout, name_of(c, i), 16);
     for (int j = 0; j < c->players; j++) {
       const pairing *p = find_pairing(c, i, j);
       char cell[64] = "";

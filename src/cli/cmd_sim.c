@@ -197,7 +197,11 @@ static vs_status play_over_threads(sim_command *c, vs_error *err) {
 static void print_match(const sim_command *c, double wall_s) {
   const vs_match_result *r = &c->results[0];
   printf("\n%-12s %10s %10s\n", "", "blue", "yellow");
-  printf("%-12s %10s %10s\n", "player", name_of(c, VS_BLUE), name_of(c, VS_YELLOW));
+  printf("%-12s ", "player");
+  vs_report_name(stdout, name_of(c, VS_BLUE), -10);
+  printf(" ");
+  vs_report_name(stdout, name_of(c, VS_YELLOW), -10);
+  printf("\n");
   printf("%-12s %10d %10d\n", "goals", r->score[VS_BLUE], r->score[VS_YELLOW]);
   printf("%-12s %10d %10d\n", "penalties", r->events[VS_BLUE][VS_EVENT_PENALTY],
          r->events[VS_YELLOW][VS_EVENT_PENALTY]);

@@ -16,13 +16,19 @@ static void cell(FILE *out, const vs_estimate *e, double scale, int digits, int 
 
 enum { NAME_WIDTH = 12 };
 
-// A long name, such as a file's, is cut at its front: its end tells it from others.
-static void name_cell(FILE *out, const char *name) {
-  size_t n = strlen(name);
-  if (n <= NAME_WIDTH)
-    fprintf(out, "%-*s", NAME_WIDTH, name);
-  else
-    fprintf(out, "..%s", name + n - (NAME_WIDTH - 2));
+static bool begins_character(char byte) { return ((unsigned char)byte & 0xc0) != 0x80; }
+
+void vs_report_name(FILE *out, const char *name, int width) {
+  int room = width < 0 ? -width : width, length = 0;
+  for (const char *c = name; *c; c++) length += begins_character(*c);
+  if (length > room) {
+    for (int cut = length - (room - 2); cut > 0 || !begins_character(*name); name++) cut -= begins_character(*name);
+    fprintf(out, "..%s", name);
+    return;
+  }
+  if (width < 0) fprintf(out, "%*s", room - length, "");
+  fputs(name, out);
+  if (width > 0) fprintf(out, "%*s", room - length, "");
 }
 
 // At most 100 columns.
@@ -32,7 +38,7 @@ void vs_report_table_head(FILE *out) {
 }
 
 void vs_report_table_row(FILE *out, const char *against, const vs_series_summary *s) {
-  name_cell(out, against);
+  vs_report_name(out, against, NAME_WIDTH);
   fprintf(out, " %6d", s->matches);
   cell(out, &s->win, 100, 0, 13);
   cell(out, &s->draw, 100, 0, 13);
@@ -58,7 +64,7 @@ void vs_report_restarts_row(FILE *out, const char *against, const vs_series_summ
   snprintf(conceded, sizeof conceded, "%.1f (%.2f)", s->penalties_against, s->penalty_goals_against);
   snprintf(free_balls, sizeof free_balls, "%.1f (%.2f:%.2f)", s->free_balls, s->free_ball_goals_for,
            s->free_ball_goals_against);
-  name_cell(out, against);
+  vs_report_name(out, against, NAME_WIDTH);
   fprintf(out, " %11s %11s %17s %10.1f %7.0f %7.1f %18s\n", won, conceded, free_balls, s->goal_kicks,
           100.0 * s->still_share, s->mean_time_s, idle);
 }

@@ -7,6 +7,10 @@
 #include "match_flags.h"
 #include "vsss/eval.h"
 
+// A name in a column of so many characters (of UTF-8), below 0 at its right end. A long one, such as a file's, is cut at
+// its front: its end tells it from others.
+void vs_report_name(FILE *out, const char *name, int width);
+
 void vs_report_table_head(FILE *out);
 void vs_report_table_row(FILE *out, const char *against, const vs_series_summary *summary);
 void vs_report_restarts_head(FILE *out);

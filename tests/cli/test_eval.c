@@ -52,6 +52,22 @@ static void a_round_robin_prints_cross_table_and_elo(void **state) {
   assert_non_null(strstr(run.out, "0/100/0 +0.00"));
 }
 
+// Columns are counted in characters, not bytes, and what tells long names apart, their ends, stays.
+static void long_and_accented_names_keep_the_columns(void **state) {
+  (void)state;
+  play("eval --round-robin emc:,zero:,random: --matches 1 --seconds 1 --drive planar --name Sele\u00e7\u00e3o "
+       "--name runs/first/kept/0010.onnx --name runs/first/kept/0020.onnx");
+  assert_non_null(
+      strstr(run.out, "\n                  Sele\u00e7\u00e3o             ..t/kept/0010.onnx  ..t/kept/0020.onnx "));
+  assert_non_null(strstr(run.out, "\n..kept/0010.onnx  "));
+  assert_non_null(strstr(run.out, "\nSele\u00e7\u00e3o                              "));
+  play("sim --blue zero: --yellow zero: --seconds 1 --drive planar --name 'Campe\u00f5es do Sul' --name \u00c1gua");
+  assert_non_null(strstr(run.out, "\nplayer       ..s do Sul       \u00c1gua\n"));
+  play(
+      "eval --blue zero: --against emc: --matches 1 --seconds 1 --drive planar --name A --name 'Campe\u00f5es do Sul'");
+  assert_non_null(strstr(run.out, "\n..\u00f5es do Sul      1  "));
+}
+
 // Matches of 2 s in which nobody scores: each goes to extra time and a shoot-out, and has a winner.
 static void knockout_matches_have_a_winner(void **state) {
   (void)state;
@@ -124,6 +140,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_table_and_its_files_are_the_same_for_1_and_3_threads),
       cmocka_unit_test(a_round_robin_prints_cross_table_and_elo),
+      cmocka_unit_test(long_and_accented_names_keep_the_columns),
       cmocka_unit_test(knockout_matches_have_a_winner),
       cmocka_unit_test(both_colours_count_together_under_the_names_given),
       cmocka_unit_test(one_match_of_a_series_is_played_again),
