@@ -42,7 +42,7 @@ VSSS_API int vs_capi_hello(uint32_t version, uint32_t size, vs_capi_about *about
 // vs_capi_vss), "summary", "player" (schemes of URIs), "release" (one).
 VSSS_API const char *vs_capi_name(const char *list, int index);
 
-// The path of a file of ours, such as "models/policy/vsss.onnx" (paths.h).
+// The path of a file of ours, such as "models/policy/vsss.onnx".
 VSSS_API int vs_capi_find(const char *relative, char *path, size_t path_size, char *error, size_t error_size);
 
 // A seed for a part of a larger whole: match i of ./vsss eval --seed S is played from vs_capi_seed(S, i) (rng.h).

@@ -68,7 +68,7 @@ VSSS_API vs_referee_def vs_referee_def_training(void); // 40 s, first goal ends 
 // Of vs_referee.half. A match of one half has only the first; 0 and 1 are regular time.
 enum { VS_HALF_EXTRA_1 = 2, VS_HALF_EXTRA_2, VS_HALF_SHOOT_OUT };
 
-// Time-outs of a team in a match, between whistle and restart, which only a match with pauses has (hosted_match.h). League: as
+// Time-outs of a team in a match, between whistle and restart, which only a match with pauses has (`vsss serve`). League: as
 // VSSReferee's configuration of 2025 has them, 2 of 120 s; LARC 2 of 180 s; Serie A 2, whose length our copy of the text
 // does not give: LARC's; paper none.
 typedef struct vs_time_outs {

@@ -16,7 +16,7 @@
 extern "C" {
 #endif
 
-#define VS_RENDER_PATCH_M 0.06 // what a camera finds adversaries by (detect.h, VS_PATCH_M)
+#define VS_RENDER_PATCH_M 0.06 // what a camera finds adversaries by
 
 typedef enum vs_view { VS_VIEW_BROADCAST, VS_VIEW_CAMERA } vs_view;
 
@@ -56,7 +56,8 @@ VSSS_API vs_status vs_render_world(vs_render *render, const vs_world *world, con
                                    vs_error *err);
 
 // The CAMERA view's exact geometry: square pixels, no distortion, looking straight down on the field's centre, with the
-// image's right = +x and its top = +y. Pixels are counted as in camera.h and calib.h: the middle of 640 pixels is 320.
+// image's right = +x and its top = +y. (0, 0) is the outer corner of the first pixel: the middle of 640
+// pixels is 320.
 // x_px = cx_px + focal_px * x_m / (height_m - z_m), y_px = cy_px - focal_px * y_m / (height_m - z_m).
 typedef struct vs_pinhole {
   int width_px, height_px;

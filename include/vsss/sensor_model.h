@@ -51,7 +51,7 @@ VSSS_API vs_sim_params vs_realism_draw(const vs_realism *realism, uint64_t seed)
 
 #define VS_SENSOR_DELAY_FRAMES 8
 #define VS_SENSOR_OBJECTS      (VS_TEAMS * VS_TEAM_MOST + 1) // team * VS_TEAM_MOST + robot; the ball is last
-// How fast robots and ball may change their velocity: the deviations of the filter that estimates it, as in track.h.
+// How fast robots and ball may change their velocity: the deviations of the filter that estimates it, on the field too.
 #define VS_SENSOR_ROBOT_ACCELERATION_MPS2  6.0
 #define VS_SENSOR_BALL_ACCELERATION_MPS2   20.0
 #define VS_SENSOR_TURN_ACCELERATION_RADPS2 200.0

@@ -1,11 +1,11 @@
 // Stable: part of libvsss (deploy/docs/library.md).
 //
-// What a player is told of an object that its camera does not see, the same on the field (track.h) and in the simulator
+// What a player is told of an object that its camera does not see, the same on the field and in the simulator
 // (sensor_model.h):
 //   not seen for a moment              it goes on as it went, for VS_UNSEEN_HOLD_US: valid
 //   for longer, or since a placement   it stays where that ended: not valid, its velocity 0
 //   never yet                          a robot is where vs_world_parked says, the ball in the middle: not valid
-// An own robot that is not valid gets no command: it stands (safety.h on the field). What else a team does without a ball is
+// An own robot that is not valid gets no command: it stands. What else a team does without a ball is
 // the field's own: deploy/docs/faults.md. In the simulator a share of the episodes is without ball or opponents where the realism
 // file says so (never_seen_share).
 #ifndef VSSS_UNSEEN_H

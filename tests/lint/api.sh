@@ -1,5 +1,5 @@
 #!/bin/sh
-# The library's boundary: the stable headers (first line "// Stable...") need stable headers only, every function in them is
+# The library's boundary: the stable headers (first line "// Stable...") need and name stable headers only, every function in them is
 # marked VSSS_API, no other header marks one; and where the library is built and up to date, it exports exactly these functions and
 # calls nothing that changes the process it is in.
 cd "$(dirname "$0")/../.." || exit 1
@@ -14,6 +14,12 @@ for header in $stable; do
   for need in $(grep -oE '^#include "vsss/[a-z_0-9]*\.h' "$header" | cut -d'"' -f2); do
     case $stable in *" include/$need "*) ;; *) say "$header: needs $need, which is not stable" ;; esac
   done
+  # Nor does a comment send the reader to one that is not installed; and the page that lists them has them all.
+  # shellcheck disable=SC2013
+  for need in $(grep -oE '\b[a-z_]+\.h\b' "$header" | sort -u); do
+    [ ! -e "include/vsss/$need" ] || case $stable in *" include/vsss/$need "*) ;; *) say "$header: names $need, which is not stable" ;; esac
+  done
+  grep -qF "\`${header##*/}\`" deploy/docs/library.md || say "deploy/docs/library.md: lacks ${header##*/}"
   unmarked=$(grep -nE '^(const )?[a-z_0-9]+ \**vss?s?_[a-z_0-9]+\(' "$header" | grep -v ':typedef')
   [ -z "$unmarked" ] || say "$header: without VSSS_API: $unmarked"
 done
