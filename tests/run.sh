@@ -24,7 +24,7 @@ one_binary() {
   if env --default-signal=HUP,INT,QUIT,TERM "$1" >"$1.log" 2>&1; then
     cases=$(sed -n 's/^\[  PASSED  \] \([0-9]*\) test.*/\1/p' "$1.log" | awk '{n += $1} END {print n + 0}')
     # cmocka names what was skipped where it happens and once more at the end.
-    awk '/^note: /{why = ": " substr($0, 7)} /^\[  SKIPPED \] [^0-9]/ && !seen[$4]++ {print "skipped " file ": " $4 why; why = ""}' \
+    awk '/^note: /{why = ": " substr($0, 7)} /^\[  SKIPPED \] [^ ]+$/ && !seen[$4]++ {print "skipped " file ": " $4 why; why = ""}' \
       file="$2" "$1.log" >"$1.skipped"
     left_out=$(grep -c . "$1.skipped")
     if [ $((cases + left_out)) = 0 ]; then # it ended before its first test
