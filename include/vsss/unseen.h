@@ -6,7 +6,7 @@
 //   for longer, or since a placement   it stays where that ended: not valid, its velocity 0
 //   never yet                          a robot is where vs_world_parked says, the ball in the middle: not valid
 // An own robot that is not valid gets no command: it stands. What else a team does without a ball is
-// the field's own: deploy/docs/faults.md. In the simulator a share of the episodes is without ball or opponents where the realism
+// the field's own: deploy/docs/faults.md. In the simulator a share of the episodes is without ball or adversaries where the realism
 // file says so (never_seen_share).
 #ifndef VSSS_UNSEEN_H
 #define VSSS_UNSEEN_H

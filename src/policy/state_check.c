@@ -39,7 +39,7 @@ static bool emc22_ok(const void *state) {
   const emc22_state *s = state;
   bool ok = vs_is_permutation(s->role, EMC22_ROLES) && in((int)s->uvf, EMC22_SEEK, EMC22_HAS) &&
             in((int)s->foul, EMC22_NO_FOUL, EMC22_OTHER) && vs_are_bools(&s->foul_ours, 1) &&
-            in(s->opponents, 0, VS_TEAM_SIZE) && in((int)s->seen.kind, 0, VS_EVENT_KINDS - 1) &&
+            in(s->adversaries, 0, VS_TEAM_SIZE) && in((int)s->seen.kind, 0, VS_EVENT_KINDS - 1) &&
             in((int)s->seen.team, VS_BLUE, VS_YELLOW) && in(s->seen.quadrant, 0, 4);
   for (int i = 0; i < VS_TEAM_SIZE; i++) ok &= command_ok(&s->robot[i].command) && vs_are_bools(&s->robot[i].spun, 1);
   return ok;

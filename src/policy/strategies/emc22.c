@@ -39,8 +39,8 @@ static void read_input(emc22_state *s, const emc22_input *in) {
   s->now_s = in->now_s;
   s->ball = in->ball;
   s->velocity_mps = in->velocity_mps;
-  s->opponents = in->opponents;
-  memcpy(s->opponent, in->opponent, sizeof s->opponent);
+  s->adversaries = in->adversaries;
+  memcpy(s->adversary, in->adversary, sizeof s->adversary);
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     s->robot[i].at = in->at[i];
     s->robot[i].theta_rad = in->theta_rad[i];
@@ -123,7 +123,7 @@ static void read_world(const vs_world *world, emc22_input *in) {
     in->theta_rad[i] = r->pose.theta_rad;
     in->omega_radps[i] = r->omega_radps;
     if (!o->valid) continue;
-    in->opponent[in->opponents++] = (vs_point){o->pose.x_m + EMC22_CENTRE_X_M, o->pose.y_m + EMC22_CENTRE_Y_M};
+    in->adversary[in->adversaries++] = (vs_point){o->pose.x_m + EMC22_CENTRE_X_M, o->pose.y_m + EMC22_CENTRE_Y_M};
   }
 }
 

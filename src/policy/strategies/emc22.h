@@ -50,8 +50,8 @@ typedef struct emc22_state {
   double command_s;      // when the referee last said anything
   double now_s;
   vs_point ball, velocity_mps;
-  vs_point opponent[VS_TEAM_SIZE];
-  int opponents;
+  vs_point adversary[VS_TEAM_SIZE];
+  int adversaries;
   vs_event seen; // the last event that the player has passed on
 } emc22_state;
 
@@ -62,8 +62,8 @@ typedef struct emc22_input {
   vs_point ball, velocity_mps;
   vs_point at[VS_TEAM_SIZE];
   double theta_rad[VS_TEAM_SIZE], omega_radps[VS_TEAM_SIZE];
-  vs_point opponent[VS_TEAM_SIZE]; // those that are seen
-  int opponents;
+  vs_point adversary[VS_TEAM_SIZE]; // those that are seen
+  int adversaries;
 } emc22_input;
 
 void emc22_init(emc22_state *s);

@@ -54,10 +54,10 @@ static vs_point meets_keeper_line(vs_point ball, double direction_rad) {
 static void keep_penalty(emc22_state *s, emc22_robot *g) {
   double y = s->ball.y;
   int shooter = -1;
-  for (int i = 0; i < s->opponents; i++)
-    if (shooter < 0 || vs_point_distance(s->opponent[i], s->ball) < vs_point_distance(s->opponent[shooter], s->ball))
+  for (int i = 0; i < s->adversaries; i++)
+    if (shooter < 0 || vs_point_distance(s->adversary[i], s->ball) < vs_point_distance(s->adversary[shooter], s->ball))
       shooter = i;
-  if (shooter >= 0) y = meets_keeper_line(s->ball, vs_point_angle(s->opponent[shooter], s->ball)).y;
+  if (shooter >= 0) y = meets_keeper_line(s->ball, vs_point_angle(s->adversary[shooter], s->ball)).y;
   vs_point place = {0.145, vs_clamp(y, EMC22_CENTRE_Y_M - 0.15, EMC22_CENTRE_Y_M + 0.15)};
   if (vs_point_distance(g->at, place) < 0.04)
     emc22_spin_kick(s, g);

@@ -21,9 +21,9 @@ static double avoid(const emc22_state *s, int robot, double course_rad) {
   if (robot == s->role[EMC22_KEEPER]) return course_rad;
   bool attacker = robot == s->role[EMC22_ATTACKER], far = vs_point_distance(r->at, s->ball) > FAR_M;
   double turn = 0.0;
-  for (int i = 0; i < s->opponents; i++)
-    if ((!attacker || far) && vs_point_distance(s->opponent[i], s->ball) > FAR_M)
-      turn += turn_from(r, course_rad, s->opponent[i], 0.07);
+  for (int i = 0; i < s->adversaries; i++)
+    if ((!attacker || far) && vs_point_distance(s->adversary[i], s->ball) > FAR_M)
+      turn += turn_from(r, course_rad, s->adversary[i], 0.07);
   const vs_point foot[] = {{r->at.x, 0.0}, {r->at.x, EMC22_WIDTH_M}, {0.0, r->at.y}, {EMC22_LENGTH_M, r->at.y}};
   for (int i = 0; i < 4; i++) turn += turn_from(r, course_rad, foot[i], 0.04);
   vs_point keeper = s->robot[s->role[EMC22_KEEPER]].at;

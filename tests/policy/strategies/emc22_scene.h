@@ -12,8 +12,8 @@
 typedef struct scene {
   vs_point ball, velocity;
   vs_point attacker, keeper, defender; // (1.0, 0.65), (0.5, 0.65), (0.6, 0.4)
-  vs_point opponent[VS_TEAM_SIZE];
-  int opponents;
+  vs_point adversary[VS_TEAM_SIZE];
+  int adversaries;
   emc22_foul foul;
   bool ours, fresh; // ... within a second
 } scene;
@@ -32,8 +32,8 @@ static inline emc22_state scene_state(const scene *c) {
   s.robot[0].at = or_else(c->attacker, 1.0, 0.65);
   s.robot[1].at = or_else(c->keeper, 0.5, 0.65);
   s.robot[2].at = or_else(c->defender, 0.6, 0.4);
-  s.opponents = c->opponents;
-  for (int i = 0; i < c->opponents; i++) s.opponent[i] = c->opponent[i];
+  s.adversaries = c->adversaries;
+  for (int i = 0; i < c->adversaries; i++) s.adversary[i] = c->adversary[i];
   for (int i = 0; i < VS_TEAM_SIZE; i++) s.robot[i].command.target = (vs_point){STORED_X, STORED_Y};
   return s;
 }

@@ -26,7 +26,7 @@ static emc22_input input_of(const vectors *v) {
   emc22_input in = {.ball = {vectors_number(v, BALL) + 0.85, vectors_number(v, BALL + 1) + 0.65},
                     .velocity_mps = {vectors_number(v, VELOCITY), vectors_number(v, VELOCITY + 1)},
                     .now_s = 5.0 + 0.033 * vectors_number(v, TICK),
-                    .opponents = VS_TEAM_SIZE};
+                    .adversaries = VS_TEAM_SIZE};
   in.command = command_of(v->column[REF], &in.command_ours);
   for (int i = 0; i < VS_TEAM_SIZE; i++) {
     int c = ROBOT + i * ROBOT_STEP;
@@ -34,7 +34,7 @@ static emc22_input input_of(const vectors *v) {
     in.theta_rad[i] = vectors_number(v, c + 2);
     in.omega_radps[i] = vectors_number(v, c + 3);
     c = OPPONENT + i * 2;
-    in.opponent[i] = (vs_point){vectors_number(v, c) + 0.85, vectors_number(v, c + 1) + 0.65};
+    in.adversary[i] = (vs_point){vectors_number(v, c) + 0.85, vectors_number(v, c + 1) + 0.65};
   }
   return in;
 }

@@ -133,7 +133,7 @@ static void player_sees_the_world_in_its_frame(void **state) {
   vs_player_close(player);
 }
 
-static void unseen_opponents_are_no_obstacles(void **state) {
+static void unseen_adversaries_are_no_obstacles(void **state) {
   (void)state;
   vs_player *player;
   assert_ok(vs_player_open("emc22:", &player, err));
@@ -146,14 +146,14 @@ static void unseen_opponents_are_no_obstacles(void **state) {
   assert_ok(vs_player_step(player, &world, &game, 0.03125, out, err));
   emc22_state s;
   vs_player_save(player, &s);
-  assert_int_equal(s.opponents, 1);
-  assert_near(s.opponent[0].x, 0.3 + 0.85, 1e-12);
+  assert_int_equal(s.adversaries, 1);
+  assert_near(s.adversary[0].x, 0.3 + 0.85, 1e-12);
   vs_player_close(player);
 }
 
 int main(void) {
   const struct CMUnitTest others[] = {cmocka_unit_test(player_sees_the_world_in_its_frame),
-                                      cmocka_unit_test(unseen_opponents_are_no_obstacles)};
+                                      cmocka_unit_test(unseen_adversaries_are_no_obstacles)};
   int failed = RUN_ROWS("roles", rows, run) + RUN_ROWS("events", events, run_event);
   return failed + cmocka_run_group_tests(others, NULL, NULL);
 }
