@@ -42,7 +42,8 @@ typedef struct vs_train_def {
   // PPO.
   double clip, entropy, value_weight;
   bool clip_value, value_scale;            // value_scale: the critic works in units of the returns' deviation
-  double learning_rate, learning_rate_end; // linear over transitions_m
+  double learning_rate, learning_rate_end; // from the first to the second over transitions_m
+  char learning_rate_decay[16];            // ... linear or exponential
   double adam_epsilon, max_gradient_norm;
   int epochs, minibatch, microbatches;
   // The networks see another of an observation's 24 symmetric versions (vsss/observe.h), drawn anew after so many decisions

@@ -1,5 +1,6 @@
 // The settings of a training run: defaults, presets, ranges.
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,8 +46,11 @@ vs_train_def vs_train_def_default(void) {
       .entropy = 0.003,
       .value_weight = 0.5,
       .value_scale = true,
+      // Beyond 1.5e-4 in the second half of a run, self-play wins more and more against its own past and less against
+      // others (deploy/docs/strength.md).
       .learning_rate = 6e-4,
-      .learning_rate_end = 5e-5,
+      .learning_rate_end = 1e-5,
+      .learning_rate_decay = "exponential",
       .adam_epsilon = 1e-5,
       .max_gradient_norm = 0.5,
       .epochs = 3,
@@ -81,6 +85,7 @@ static void without_levers(vs_train_def *def) {
 
 void vs_train_def_before(vs_train_def *def) {
   snprintf(def->precision, sizeof def->precision, "fp32");
+  snprintf(def->learning_rate_decay, sizeof def->learning_rate_decay, "linear");
   without_levers(def);
 }
 
@@ -154,6 +159,7 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       SWITCH(value_scale, "value in units of the returns"),
       REAL(learning_rate, 1e-7, 0.1, "of Adam, at the start"),
       REAL(learning_rate_end, 1e-7, 0.1, "... at transitions_m"),
+      TEXT(learning_rate_decay, "... linear or exponential in between"),
       REAL(adam_epsilon, 1e-12, 0.1, "of Adam"),
       REAL(max_gradient_norm, 1e-3, 1e6, "gradients are scaled down to it"),
       WHOLE(epochs, 1, 100, "passes over a batch"),
@@ -256,6 +262,13 @@ vs_status vs_train_precision(const vs_train_def *def, vs_precision *out, vs_erro
   return vs_fail(err, VS_USAGE, "precision = %s: expected fp32, bf16 or auto", def->precision);
 }
 
+double vs_train_learning_rate(const vs_train_def *def, double transitions) {
+  double part = def->transitions_m > 0.0 ? fmin(transitions * 1e-6 / def->transitions_m, 1.0) : 0.0;
+  if (!strcmp(def->learning_rate_decay, "exponential"))
+    return def->learning_rate * pow(def->learning_rate_end / def->learning_rate, part);
+  return def->learning_rate + part * (def->learning_rate_end - def->learning_rate);
+}
+
 vs_status vs_train_def_check(const vs_train_def *def, vs_error *err) {
   vs_drive drive;
   vs_placement_mode placement;
@@ -271,6 +284,8 @@ vs_status vs_train_def_check(const vs_train_def *def, vs_error *err) {
   if (s == VS_OK) s = vs_reward_mix_parse(def->reward, &weights, err);
   if (s == VS_OK) s = vs_reward_mix_parse(def->reward_end, &weights, err);
   if (s != VS_OK) return s;
+  if (strcmp(def->learning_rate_decay, "linear") != 0 && strcmp(def->learning_rate_decay, "exponential") != 0)
+    return vs_fail(err, VS_USAGE, "learning_rate_decay = %s: expected linear or exponential", def->learning_rate_decay);
   if (strcmp(def->learner, "own") != 0 && strcmp(def->learner, "torch") != 0)
     return vs_fail(err, VS_USAGE, "learner = %s: expected own or torch", def->learner);
   vs_precision precision = VS_PRECISION_FP32;

@@ -57,6 +57,8 @@ vs_status vs_train_imitate_over(vs_train *train, const vs_matches *matches, int 
 
 // Settings that older checkpoints lack, as those runs had them.
 void vs_train_def_before(vs_train_def *def);
+// At so many transitions.
+double vs_train_learning_rate(const vs_train_def *def, double transitions);
 vs_status vs_train_precision(const vs_train_def *def, vs_precision *out, vs_error *err);
 vs_status vs_train_hidden(const vs_train_def *def, vs_net_shape *shape, vs_error *err);
 

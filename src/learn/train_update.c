@@ -34,12 +34,6 @@ vs_status vs_train_targets(vs_train *t, vs_ppo_batch *out, vs_error *err) {
   return vs_value_scale_follow(&t->scale, t->group, &values, &t->learner.net, t->learner.parameters, err);
 }
 
-static double learning_rate(const vs_train *t) {
-  double part = t->def.transitions_m > 0.0 ? (double)t->transitions * 1e-6 / t->def.transitions_m : 0.0;
-  if (part > 1.0) part = 1.0;
-  return t->def.learning_rate + part * (t->def.learning_rate_end - t->def.learning_rate);
-}
-
 vs_status vs_train_sum_up(const vs_train *t, vs_rollout_stats *played, vs_ppo_stats *ppo, vs_error *err) {
   if (!t->group) return VS_OK;
   vs_status s = t->group->sum_doubles(t->group->self, (double *)played, sizeof *played / sizeof(double), err);
@@ -113,7 +107,7 @@ vs_status vs_train_update(vs_train *train, vs_train_report *report, vs_error *er
   vs_learner_stats learnt = {0};
   const vs_reward_weights weights = vs_reward_mix_at(&train->reward_start, &train->reward_end, train->def.anneal_from_m,
                                                      train->def.anneal_to_m, (double)train->transitions * 1e-6);
-  train->learner.def.learning_rate = learning_rate(train);
+  train->learner.def.learning_rate = vs_train_learning_rate(&train->def, (double)train->transitions);
   uint64_t seed = vs_seed_mix(train->def.seed, (uint64_t)train->updates);
 
   // Collect: `steps` decisions of every match by the present policy.

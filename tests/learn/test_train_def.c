@@ -1,9 +1,11 @@
 // Tests src/learn/train_def.c and src/learn/reward_mix.c
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "assert_near.h"
 #include "learn/reward_mix.h"
+#include "learn/train_internal.h"
 #include "vsss/learn.h"
 
 // Paper, Table 2 and section VII: lambda 0.95, gamma 0.99, clip 0.2, learning rate 4e-4, 200 environments, 5 epochs,
@@ -49,6 +51,36 @@ static void settings_read_back_as_they_were_written(void **state) {
   assert_string_equal(read.reward, def.reward);
   assert_string_equal(read.opponent, def.opponent);
   assert_true(read.value_scale);
+}
+
+static void the_learning_rate_falls_as_it_is_set(void **state) {
+  (void)state;
+  vs_train_def def;
+  assert_ok(vs_train_def_preset("default", &def, err));
+  def.learning_rate = 1e-3, def.learning_rate_end = 1e-5, def.transitions_m = 40.0;
+  snprintf(def.learning_rate_decay, sizeof def.learning_rate_decay, "exponential");
+  assert_near(vs_train_learning_rate(&def, 0.0), 1e-3, 1e-12);
+  assert_near(vs_train_learning_rate(&def, 20e6), 1e-4, 1e-12);
+  assert_near(vs_train_learning_rate(&def, 30e6), sqrt(10.0) * 1e-5, 1e-12);
+  assert_near(vs_train_learning_rate(&def, 50e6), 1e-5, 1e-12);
+  snprintf(def.learning_rate_decay, sizeof def.learning_rate_decay, "linear");
+  assert_near(vs_train_learning_rate(&def, 0.0), 1e-3, 1e-12);
+  assert_near(vs_train_learning_rate(&def, 20e6), 5.05e-4, 1e-12);
+  assert_near(vs_train_learning_rate(&def, 50e6), 1e-5, 1e-12);
+  def.transitions_m = 0.0; // without an end it stays
+  assert_near(vs_train_learning_rate(&def, 50e6), 1e-3, 1e-12);
+  snprintf(def.learning_rate_decay, sizeof def.learning_rate_decay, "cosine");
+  vs_error err = {0};
+  assert_int_equal(vs_train_def_check(&def, &err), VS_USAGE);
+  assert_string_equal(err.text, "learning_rate_decay = cosine: expected linear or exponential");
+}
+
+// Checkpoints of before the setting fell linearly.
+static void runs_of_before_go_on_as_they_were(void **state) {
+  (void)state;
+  vs_train_def def = vs_train_def_default();
+  vs_train_def_before(&def);
+  assert_string_equal(def.learning_rate_decay, "linear");
 }
 
 static void names_of_before_are_still_read(void **state) {
@@ -112,9 +144,10 @@ static void the_schedule_is_linear_between_its_ends(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_paper_preset_is_table_2),      cmocka_unit_test(settings_read_back_as_they_were_written),
-      cmocka_unit_test(names_of_before_are_still_read),   cmocka_unit_test(every_preset_passes_its_own_check),
-      cmocka_unit_test(a_reward_is_a_preset_and_changes), cmocka_unit_test(the_schedule_is_linear_between_its_ends),
+      cmocka_unit_test(the_paper_preset_is_table_2),          cmocka_unit_test(settings_read_back_as_they_were_written),
+      cmocka_unit_test(the_learning_rate_falls_as_it_is_set), cmocka_unit_test(runs_of_before_go_on_as_they_were),
+      cmocka_unit_test(names_of_before_are_still_read),       cmocka_unit_test(every_preset_passes_its_own_check),
+      cmocka_unit_test(a_reward_is_a_preset_and_changes),     cmocka_unit_test(the_schedule_is_linear_between_its_ends),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
