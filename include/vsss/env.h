@@ -77,6 +77,8 @@ VSSS_API void vs_env_mean_action(const vs_env *env, vs_team team, float *out);
 // Swap the player of a team; takes effect at the next reset.
 VSSS_API vs_status vs_env_set_player(vs_env *env, vs_team team, const char *uri, vs_error *err);
 
+VSSS_API void vs_env_set_episode(vs_env *env, const vs_episode_def *episode); // def.episode from the next reset on
+
 VSSS_API bool vs_env_over(const vs_env *env);
 VSSS_API void vs_env_truth(const vs_env *env, vs_world *out);
 VSSS_API void vs_env_judged(const vs_env *env,

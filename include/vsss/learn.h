@@ -26,7 +26,8 @@ typedef struct vs_train_def {
   char predicts[16];                                 // who sees the world moved on by the delay (vsss/env.h)
   double still_low_s, still_high_s;                  // how long the ball may lie still, drawn for each episode
   double start_open, start_penalty, start_free_ball; // shares of episodes that begin so; the rest kick off
-  int envs, steps;                                   // matches side by side; decisions of each per update
+  double start_from_m; // millions of transitions before which all kick off and still_high_s holds
+  int envs, steps;     // matches side by side; decisions of each per update
   int threads;
   uint64_t seed;
   // Opponents (src/learn/league.h).
@@ -44,6 +45,7 @@ typedef struct vs_train_def {
   bool clip_value, value_scale;            // value_scale: the critic works in units of the returns' deviation
   double learning_rate, learning_rate_end; // from the first to the second over transitions_m
   char learning_rate_decay[16];            // ... linear or exponential
+  double learning_rate_hold_m;             // ... after so many millions at the first
   double adam_epsilon, max_gradient_norm;
   int epochs, minibatch, microbatches;
   // The networks see another of an observation's 24 symmetric versions (vsss/observe.h), drawn anew after so many decisions

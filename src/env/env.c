@@ -331,6 +331,8 @@ void vs_env_mean_action(const vs_env *env, vs_team team, float *out) {
   for (int k = 0; k < VS_TEAM_SIZE * VS_ACTION_SIZE; k++) out[k] = (float)(sum[k] / frames);
 }
 
+void vs_env_set_episode(vs_env *env, const vs_episode_def *episode) { env->def.episode = *episode; }
+
 vs_status vs_env_set_player(vs_env *env, vs_team team, const char *uri, vs_error *err) {
   vs_control *control = NULL;
   vs_status s = open_control(uri, vs_model_division(env->def.model), &control, err);

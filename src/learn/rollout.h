@@ -14,6 +14,9 @@
 // The matches, as a table of functions: vs_vecenv in training, a tiny task in the tests.
 typedef struct vs_matches {
   void *self;
+  // What has been learnt so far, in millions of transitions, before each batch: episodes may begin otherwise from there
+  // on. NULL: they do not.
+  void (*learnt)(void *self, double transitions_m);
   vs_status (*reset)(void *self, const vs_vecenv_buffers *buffers, vs_error *err);
   vs_status (*step)(void *self, const vs_vecenv_buffers *buffers, vs_error *err);
   size_t (*state_size)(const void *self);

@@ -14,9 +14,9 @@
 #include "vsss/referee.h"
 #include "vsss/sim.h"
 
-// The settings that trained the shipped policy, and what its export has gained since. The other levers (realism, start
-// states, a shorter still clock, canonical observations, a gain in training) are off: deploy/docs/strength.md says what
-// they gave, and what differs from those runs all the same.
+// What was found to help (deploy/docs/strength.md): 20 million transitions of kick-offs at a high learning rate, then
+// start states, a shorter still clock and small steps, without which a run loses to strangers what it wins against itself.
+// The other levers (realism, canonical observations, a gain in training) are off.
 vs_train_def vs_train_def_default(void) {
   return (vs_train_def){
       .drive = "planar",
@@ -24,8 +24,12 @@ vs_train_def vs_train_def_default(void) {
       .predicts = "learned",
       .episode_s = 40.0,
       .still_distance_m = VS_STILL_DISTANCE_M,
-      .still_low_s = VS_STILL_S,
+      .still_low_s = 2.0,
       .still_high_s = VS_STILL_S,
+      .start_open = 0.3,
+      .start_penalty = 0.05,
+      .start_free_ball = 0.1,
+      .start_from_m = 20.0,
       .envs = 96,
       .steps = 32,
       .threads = 2,
@@ -46,11 +50,10 @@ vs_train_def vs_train_def_default(void) {
       .entropy = 0.003,
       .value_weight = 0.5,
       .value_scale = true,
-      // Beyond 1.5e-4 in the second half of a run, self-play wins more and more against its own past and less against
-      // others (deploy/docs/strength.md).
       .learning_rate = 6e-4,
       .learning_rate_end = 1e-5,
       .learning_rate_decay = "exponential",
+      .learning_rate_hold_m = 16.0,
       .adam_epsilon = 1e-5,
       .max_gradient_norm = 0.5,
       .epochs = 3,
@@ -74,7 +77,7 @@ static void without_levers(vs_train_def *def) {
   def->realism[0] = '\0';
   def->still_distance_m = VS_STILL_DISTANCE_M;
   def->still_low_s = def->still_high_s = VS_STILL_S;
-  def->start_open = def->start_penalty = def->start_free_ball = 0.0;
+  def->start_open = def->start_penalty = def->start_free_ball = def->start_from_m = 0.0;
   def->augment = 0;
   def->canonical = false;
   def->action_gain = 1.0;
@@ -86,6 +89,7 @@ static void without_levers(vs_train_def *def) {
 void vs_train_def_before(vs_train_def *def) {
   snprintf(def->precision, sizeof def->precision, "fp32");
   snprintf(def->learning_rate_decay, sizeof def->learning_rate_decay, "linear");
+  def->learning_rate_hold_m = 0.0;
   without_levers(def);
 }
 
@@ -107,6 +111,8 @@ static vs_train_def paper(void) {
   def.clip_value = true;
   def.value_scale = false;
   def.learning_rate = def.learning_rate_end = 4e-4;
+  snprintf(def.learning_rate_decay, sizeof def.learning_rate_decay, "linear");
+  def.learning_rate_hold_m = 0.0;
   def.epochs = 5;
   def.minibatch = 4280;
   def.initial_concentration = 1.6931471805599453; // zero bias: 1 + softplus(0)
@@ -137,6 +143,8 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       REAL(start_open, 0, 1, "share of episodes that begin in open play, ball rolling"),
       REAL(start_penalty, 0, 1, "... with a penalty"),
       REAL(start_free_ball, 0, 1, "... with a free ball; the rest with a kick-off"),
+      REAL(start_from_m, 0, 1e6,
+           "... from so many millions of transitions on, and still_low_s too; before: kick-offs, still_high_s"),
       WHOLE(envs, 1, 4096, "matches side by side"),
       WHOLE(steps, 1, 4096, "decisions of each match per update"),
       WHOLE(threads, 1, 256, "threads"),
@@ -160,6 +168,7 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       REAL(learning_rate, 1e-7, 0.1, "of Adam, at the start"),
       REAL(learning_rate_end, 1e-7, 0.1, "... at transitions_m"),
       TEXT(learning_rate_decay, "... linear or exponential in between"),
+      REAL(learning_rate_hold_m, 0, 1e6, "... once so many millions of transitions are done"),
       REAL(adam_epsilon, 1e-12, 0.1, "of Adam"),
       REAL(max_gradient_norm, 1e-3, 1e6, "gradients are scaled down to it"),
       WHOLE(epochs, 1, 100, "passes over a batch"),
@@ -263,7 +272,8 @@ vs_status vs_train_precision(const vs_train_def *def, vs_precision *out, vs_erro
 }
 
 double vs_train_learning_rate(const vs_train_def *def, double transitions) {
-  double part = def->transitions_m > 0.0 ? fmin(transitions * 1e-6 / def->transitions_m, 1.0) : 0.0;
+  double falls_m = def->transitions_m - def->learning_rate_hold_m; // the length of the fall
+  double part = falls_m > 0.0 ? fmin(fmax(transitions * 1e-6 - def->learning_rate_hold_m, 0.0) / falls_m, 1.0) : 0.0;
   if (!strcmp(def->learning_rate_decay, "exponential"))
     return def->learning_rate * pow(def->learning_rate_end / def->learning_rate, part);
   return def->learning_rate + part * (def->learning_rate_end - def->learning_rate);

@@ -9,7 +9,19 @@
 typedef struct sim_matches {
   vs_model *model;
   vs_vecenv *vec;
+  int envs;
+  vs_episode_def young, grown; // before start_from_m and after
+  double start_from_m;
 } sim_matches;
+
+static const vs_episode_def *episode_at(const sim_matches *m, double transitions_m) {
+  return transitions_m < m->start_from_m ? &m->young : &m->grown;
+}
+
+static void learnt(void *self, double transitions_m) {
+  sim_matches *m = self;
+  for (int i = 0; i < m->envs; i++) vs_env_set_episode(vs_vecenv_env(m->vec, i), episode_at(m, transitions_m));
+}
 
 static vs_status reset(void *self, const vs_vecenv_buffers *buffers, vs_error *err) {
   return vs_vecenv_reset(((sim_matches *)self)->vec, buffers, err);
@@ -53,12 +65,17 @@ static vs_status open_vecenv(sim_matches *m, const vs_train_def *def, int rank, 
   vec.env.referee.duration_s = def->episode_s;
   vec.env.referee.still_distance_m = def->still_distance_m;
   vec.env.shuffle_adversaries = true;
-  vec.env.episode = (vs_episode_def){.open_play = def->start_open,
-                                     .penalty = def->start_penalty,
-                                     .free_ball = def->start_free_ball,
-                                     .still_low_s = def->still_low_s,
-                                     .still_high_s = def->still_high_s,
-                                     .either_kicks_off = true};
+  m->envs = def->envs;
+  m->start_from_m = def->start_from_m;
+  m->young =
+      (vs_episode_def){.still_low_s = def->still_high_s, .still_high_s = def->still_high_s, .either_kicks_off = true};
+  m->grown = (vs_episode_def){.open_play = def->start_open,
+                              .penalty = def->start_penalty,
+                              .free_ball = def->start_free_ball,
+                              .still_low_s = def->still_low_s,
+                              .still_high_s = def->still_high_s,
+                              .either_kicks_off = true};
+  vec.env.episode = *episode_at(m, 0.0);
   s = vs_placement_parse(def->placement, &vec.env.referee.placement, err);
   if (s == VS_OK) s = vs_predicts_parse(def->predicts, &vec.env.predicts, err);
   if (s == VS_OK && def->realism[0]) s = load_realism(def->realism, &vec.env.realism, err);
@@ -81,6 +98,6 @@ vs_status vs_train_matches_open(const vs_train_def *def, const vs_league *league
     free_matches(m);
     return s;
   }
-  *out = (vs_matches){m, reset, step, state_size, save, restore, free_matches};
+  *out = (vs_matches){m, learnt, reset, step, state_size, save, restore, free_matches};
   return VS_OK;
 }

@@ -110,6 +110,8 @@ vs_status vs_train_update(vs_train *train, vs_train_report *report, vs_error *er
   train->learner.def.learning_rate = vs_train_learning_rate(&train->def, (double)train->transitions);
   uint64_t seed = vs_seed_mix(train->def.seed, (uint64_t)train->updates);
 
+  if (train->matches.learnt) train->matches.learnt(train->matches.self, (double)train->transitions * 1e-6);
+
   // Collect: `steps` decisions of every match by the present policy.
   vs_status s = start_matches(train, err);
   if (s == VS_OK) s = vs_train_collect(train, &weights, &report->simulate_s, &report->infer_s, err);

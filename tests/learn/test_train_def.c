@@ -58,6 +58,7 @@ static void the_learning_rate_falls_as_it_is_set(void **state) {
   vs_train_def def;
   assert_ok(vs_train_def_preset("default", &def, err));
   def.learning_rate = 1e-3, def.learning_rate_end = 1e-5, def.transitions_m = 40.0;
+  def.learning_rate_hold_m = 0.0;
   snprintf(def.learning_rate_decay, sizeof def.learning_rate_decay, "exponential");
   assert_near(vs_train_learning_rate(&def, 0.0), 1e-3, 1e-12);
   assert_near(vs_train_learning_rate(&def, 20e6), 1e-4, 1e-12);
@@ -67,6 +68,11 @@ static void the_learning_rate_falls_as_it_is_set(void **state) {
   assert_near(vs_train_learning_rate(&def, 0.0), 1e-3, 1e-12);
   assert_near(vs_train_learning_rate(&def, 20e6), 5.05e-4, 1e-12);
   assert_near(vs_train_learning_rate(&def, 50e6), 1e-5, 1e-12);
+  def.learning_rate_hold_m = 10.0, def.transitions_m = 30.0;
+  assert_near(vs_train_learning_rate(&def, 9e6), 1e-3, 1e-12);
+  assert_near(vs_train_learning_rate(&def, 20e6), 5.05e-4, 1e-12);
+  assert_near(vs_train_learning_rate(&def, 30e6), 1e-5, 1e-12);
+  def.learning_rate_hold_m = 0.0;
   def.transitions_m = 0.0; // without an end it stays
   assert_near(vs_train_learning_rate(&def, 50e6), 1e-3, 1e-12);
   snprintf(def.learning_rate_decay, sizeof def.learning_rate_decay, "cosine");

@@ -103,7 +103,7 @@ static void tiny_free(void *self) {
 static vs_matches tiny_matches(int envs, int length, uint64_t seed) {
   tiny *t = malloc(sizeof *t);
   *t = (tiny){envs, length, seed, calloc((size_t)envs, sizeof(int)), calloc((size_t)envs, sizeof(int)), false};
-  return (vs_matches){t, tiny_reset, tiny_step, tiny_size, tiny_save, tiny_restore, tiny_free};
+  return (vs_matches){t, NULL, tiny_reset, tiny_step, tiny_size, tiny_save, tiny_restore, tiny_free};
 }
 
 #endif
