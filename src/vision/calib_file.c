@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "point_line.h"
 #include "vsss/calib.h"
 #include "vsss/config.h"
 #include "vsss/file.h"
@@ -154,10 +155,8 @@ vs_status vs_calib_load_points(const char *path, vs_calib_point *out, int capaci
   char text[512];
   vs_status s = VS_OK;
   for (int line = 1; s == VS_OK && fgets(text, sizeof text, f); line++) {
-    if (!strchr(text, '\n') && !feof(f)) {
-      s = vs_fail(err, VS_USAGE, "%s:%d: line longer than %zu characters", path, line, sizeof text - 2);
-      break;
-    }
+    s = vs_point_line_check(f, path, line, text, sizeof text, err);
+    if (s != VS_OK) break;
     text[strcspn(text, "#")] = '\0';
     if (!text[strspn(text, " \t\r\n")]) continue;
     if (*count == capacity)

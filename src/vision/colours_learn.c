@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "point_line.h"
 #include "vsss/colours.h"
 
 enum { REACH_PX = 2, MOST_PIXELS = 4096 };
@@ -30,10 +31,8 @@ vs_status vs_colours_load_points(const char *path, vs_colour_point *out, int cap
   vs_status s = VS_OK;
   for (int number = 1; s == VS_OK && fgets(line, sizeof line, f); number++) {
     char name[16], more[2];
-    if (!strchr(line, '\n') && !feof(f)) {
-      s = vs_fail(err, VS_USAGE, "%s:%d: line longer than %zu characters", path, number, sizeof line - 2);
-      break;
-    }
+    s = vs_point_line_check(f, path, number, line, sizeof line, err);
+    if (s != VS_OK) break;
     line[strcspn(line, "#\r\n")] = '\0';
     if (line[strspn(line, " \t")] == '\0') continue;
     vs_colour_point p;
