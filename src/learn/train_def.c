@@ -72,12 +72,15 @@ vs_train_def vs_train_def_default(void) {
   };
 }
 
-// Every episode a kick-off by the rules' own clock; the network sees and drives as the contract says.
+// Every episode a kick-off by the rules' own clock; the network sees and drives as the contract says; the learning rate
+// falls in a straight line.
 static void without_levers(vs_train_def *def) {
   def->realism[0] = '\0';
   def->still_distance_m = VS_STILL_DISTANCE_M;
   def->still_low_s = def->still_high_s = VS_STILL_S;
   def->start_open = def->start_penalty = def->start_free_ball = def->start_from_m = 0.0;
+  snprintf(def->learning_rate_decay, sizeof def->learning_rate_decay, "linear");
+  def->learning_rate_hold_m = 0.0;
   def->augment = 0;
   def->canonical = false;
   def->action_gain = 1.0;
@@ -88,8 +91,6 @@ static void without_levers(vs_train_def *def) {
 
 void vs_train_def_before(vs_train_def *def) {
   snprintf(def->precision, sizeof def->precision, "fp32");
-  snprintf(def->learning_rate_decay, sizeof def->learning_rate_decay, "linear");
-  def->learning_rate_hold_m = 0.0;
   without_levers(def);
 }
 
@@ -111,8 +112,6 @@ static vs_train_def paper(void) {
   def.clip_value = true;
   def.value_scale = false;
   def.learning_rate = def.learning_rate_end = 4e-4;
-  snprintf(def.learning_rate_decay, sizeof def.learning_rate_decay, "linear");
-  def.learning_rate_hold_m = 0.0;
   def.epochs = 5;
   def.minibatch = 4280;
   def.initial_concentration = 1.6931471805599453; // zero bias: 1 + softplus(0)
