@@ -1,11 +1,10 @@
 // src/base/config.c
 #include "assert_near.h"
+#include "test_folder.h"
 #include "vsss/config.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 typedef struct settings {
   int envs;
@@ -114,13 +113,14 @@ static void what_is_no_text_file_is_refused(void **state) {
   vs_error err = {0};
   assert_int_equal(vs_config_load("/dev/zero", schema, &err), VS_USAGE); // it would be read until memory is full
   assert_non_null(strstr(err.text, "/dev/zero: more than 1048576 bytes"));
-  char path[] = "/tmp/vsss_config_XXXXXX";
-  int file = mkstemp(path);
+  char path[96];
+  snprintf(path, sizeof path, "%s/zero.ini", folder);
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
   static const char text[] = "name = a\n\0name = b\n"; // what follows the zero would not be read
-  assert_int_equal(write(file, text, sizeof text - 1), sizeof text - 1);
-  close(file);
+  assert_int_equal(fwrite(text, 1, sizeof text - 1, file), sizeof text - 1);
+  assert_int_equal(fclose(file), 0);
   assert_int_equal(vs_config_load(path, schema, &err), VS_USAGE);
-  unlink(path);
   assert_non_null(strstr(err.text, "holds a zero byte"));
 }
 
@@ -136,5 +136,5 @@ int main(void) {
       cmocka_unit_test(missing_file_is_named),
       cmocka_unit_test(what_is_no_text_file_is_refused),
   };
-  return cmocka_run_group_tests_name("base/config", tests, NULL, NULL);
+  return cmocka_run_group_tests_name("base/config", tests, make_folder, remove_folder);
 }
