@@ -1,12 +1,12 @@
 // vsss plot: figures of a training run, like the paper's Figures 6 to 11, by gnuplot.
-#include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "child.h"
 #include "cli.h"
 #include "commands.h"
+#include "gnuplot.h"
+#include "plot_compare.h"
 
 // One picture: a name, a title, what the y axis says, and curves as columns of progress.csv ("name title" pairs).
 typedef struct figure {
@@ -117,20 +117,13 @@ static void read_opponents(const char *folder, opponents *o) {
   if (f) fclose(f);
 }
 
-// In single quotes gnuplot takes everything as it is but the quote, which is written twice.
-static void quoted(FILE *out, const char *text) {
-  fputc('\'', out);
-  for (; *text; text++) fprintf(out, *text == '\'' ? "''" : "%c", *text);
-  fputc('\'', out);
-}
-
 static void plot_opponents(FILE *out, const opponents *o, const char *values, const char *style) {
   fprintf(out, "plot ");
   for (int i = 0; i < o->count; i++) {
     fprintf(out, "%s'eval.csv' using (strcol('opponent') eq ", i ? ", " : "");
-    quoted(out, o->name[i]);
+    vs_gnuplot_quote(out, o->name[i]);
     fprintf(out, " ? column('transitions')/1e6 : NaN):%s with %s lw 2 title ", values, style);
-    quoted(out, o->name[i]);
+    vs_gnuplot_quote(out, o->name[i]);
     fprintf(out, " noenhanced");
   }
   fprintf(out, "\n");
@@ -173,34 +166,12 @@ static bool has_rows(const char *folder, const char *name) {
 
 static void write_script(FILE *out, const measured *m, const opponents *o, bool svg) {
   const char *ending = svg ? "svg" : "png";
-  fprintf(out,
-          "set terminal %s\nset datafile separator ','\nset datafile missing NaN\nset key autotitle columnhead\nset "
-          "datafile columnheaders\nset "
-          "grid\nset key outside "
-          "below\nset xlabel 'million transitions'\n"
-          "stats 'progress.csv' using (column('transitions')/1e6) nooutput\nbin = STATS_max/200\n",
-          svg ? "svg size 900,560 font 'sans,14'" : "pngcairo size 900,560 font 'sans,12'");
+  vs_gnuplot_terminal(out, svg, 900, 560);
+  fprintf(out, "set datafile separator ','\nset datafile missing NaN\nset key autotitle columnhead\n"
+               "set datafile columnheaders\nset grid\nset key outside below\nset xlabel 'million transitions'\n"
+               "stats 'progress.csv' using (column('transitions')/1e6) nooutput\nbin = STATS_max/200\n");
   for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) plot_figure(out, &figures[i], m, ending);
   if (o->count) plot_eval(out, o, ending);
-}
-
-// said: what it says, of which only the reason of a failure is worth reading.
-static vs_status run_gnuplot(FILE *script, FILE *said, const char *folder, vs_error *err) {
-  char *argv[] = {"gnuplot", "-", NULL}, line[256], why[256] = "no reason given";
-  if (fflush(script) != 0 || fseek(script, 0, SEEK_SET) != 0)
-    return vs_fail(err, VS_FAIL, "a temporary file: %s", strerror(errno));
-  const vs_child_def def = {.argv = argv, .folder = folder, .in = fileno(script), .err = fileno(said)};
-  pid_t gnuplot;
-  int failed = vs_child_start(&def, &gnuplot);
-  if (failed == ENOENT) return vs_fail(err, VS_FAIL, "gnuplot is missing: apt install gnuplot-nox");
-  if (failed) return vs_fail(err, VS_FAIL, "cannot start gnuplot: %s", strerror(failed));
-  if (vs_child_wait(gnuplot) == 0) return VS_OK;
-  rewind(said);
-  while (fgets(line, sizeof line, said)) {
-    line[strcspn(line, "\n")] = '\0';
-    if (line[0] && strncmp(line, "Warning", 7) != 0) memcpy(why, line, sizeof why);
-  }
-  return vs_fail(err, VS_FAIL, "gnuplot: %s", why);
 }
 
 static vs_status plot(const char *folder, bool svg, vs_error *err) {
@@ -210,12 +181,12 @@ static vs_status plot(const char *folder, bool svg, vs_error *err) {
   measured m;
   read_opponents(folder, &o);
   read_measured(folder, &m);
-  FILE *script = tmpfile(), *said = tmpfile();
-  vs_status s = script && said ? VS_OK : vs_fail(err, VS_FAIL, "a temporary file: %s", strerror(errno));
-  if (s == VS_OK) write_script(script, &m, &o, svg);
-  if (s == VS_OK) s = run_gnuplot(script, said, folder, err);
-  if (script) fclose(script);
-  if (said) fclose(said);
+  vs_gnuplot g;
+  vs_status s = vs_gnuplot_begin(&g, err);
+  if (s != VS_OK) return s;
+  write_script(g.script, &m, &o, svg);
+  s = vs_gnuplot_run(&g, folder, err);
+  vs_gnuplot_end(&g);
   if (s != VS_OK) return s;
   const char *ending = svg ? "svg" : "png";
   for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
@@ -225,14 +196,26 @@ static vs_status plot(const char *folder, bool svg, vs_error *err) {
 }
 
 int cmd_plot(int argc, char **argv) {
-  bool svg = false, help;
-  const vs_flag flags[] = {{"svg", VS_FLAG_SWITCH, &svg, NULL, "SVG instead of PNG", 0, 0}, {.name = NULL}};
+  bool help;
+  const char *into = NULL;
+  vs_plot_compare_def compare = {0};
+  const vs_flag flags[] = {
+      {"compare", VS_FLAG_TEXT, &into, "FOLDER", "matches of the runs side by side instead, drawn into this folder", 0,
+       0},
+      {"minutes", VS_FLAG_SWITCH, &compare.minutes, NULL, "... over minutes of training instead of transitions", 0, 0},
+      {"svg", VS_FLAG_SWITCH, &compare.svg, NULL, "SVG instead of PNG", 0, 0},
+      {.name = NULL}};
   vs_flag_list words = {0};
   vs_error err = {0};
-  vs_status s = vs_args_parse(argc, argv, "plot RUN [--svg]", "Draws the figures of a training run into its folder.",
-                              flags, &words, &help, &err);
+  vs_status s = vs_args_parse(argc, argv, "plot RUN... [flags]",
+                              "Draws the figures of training runs, each into its folder.", flags, &words, &help, &err);
   if (s == VS_OK && help) return 0;
-  if (s == VS_OK && words.count != 1) s = vs_fail(&err, VS_USAGE, "name one run's folder, such as runs/vsss");
-  if (s == VS_OK) s = plot(words.value[0], svg, &err);
+  if (s == VS_OK && !words.count) s = vs_fail(&err, VS_USAGE, "name a run's folder, such as runs/vsss");
+  if (s == VS_OK && compare.minutes && !into)
+    s = vs_fail(&err, VS_USAGE, "--minutes goes with --compare FOLDER: the figures of one run are over transitions");
+  compare.runs = words.count;
+  compare.run = words.value;
+  if (s == VS_OK && into) s = vs_plot_compare(&compare, into, &err);
+  for (int i = 0; s == VS_OK && !into && i < words.count; i++) s = plot(words.value[i], compare.svg, &err);
   return s == VS_OK ? 0 : vs_cli_error("plot", &err);
 }

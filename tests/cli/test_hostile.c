@@ -222,6 +222,9 @@ static void any_name_of_a_folder_is_only_a_name(void **state) {
     snprintf(text, sizeof text, "test -s '%s/%s/reward.svg' && test -s '%s/%s/eval_win.svg' && ! test -e stolen",
              folder, names[i], folder, names[i]);
     assert_int_equal(system(text), 0);
+    snprintf(text, sizeof text, "plot '%s/%s' --compare '%s/%s/side' --svg", folder, names[i], folder, names[i]);
+    run(&o, "", text, "");
+    if (o.status != 0) fail_msg("vsss %s: %s", text, o.err);
     snprintf(text, sizeof text, "train --resume '%s/%s' --transitions 0.0001", folder, names[i]);
     run(&o, "", text, "");
     if (o.status != 0) fail_msg("vsss %s: %s", text, o.err);

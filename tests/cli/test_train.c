@@ -14,7 +14,7 @@ static char text[65536];
 
 static const char *with_folder(const char *format) {
   static char arguments[1024];
-  snprintf(arguments, sizeof arguments, format, folder, folder);
+  snprintf(arguments, sizeof arguments, format, folder, folder, folder);
   return arguments;
 }
 
@@ -193,6 +193,30 @@ static void evaluation_is_written_beside_the_progress(void **state) {
   assert_true(exists("%s/e/eval_score.png"));
 }
 
+static void matches_of_several_runs_are_drawn_side_by_side(void **state) {
+  (void)state;
+  train("train --run %s/side-a " SMALL
+        "--transitions 0.0005 --eval-every 0.000001 --eval-against zero: --eval-matches 1");
+  assert_refused(with_folder("plot %s/side-a %s/side-b --compare %s/side"), 1, "side-b/eval.csv");
+  assert_false(exists("%s/side"));
+  assert_int_equal(system(with_folder("cp -r %s/side-a %s/side-b")), 0);
+  train("plot %s/side-a %s/side-b --compare %s/side/by --svg");
+  assert_non_null(strstr(run.out, "side/by/compare_win.svg\n"));
+  const char *const figures[] = {"%s/side/by/compare_win.svg", "%s/side/by/compare_score.svg"};
+  for (int i = 0; i < 2; i++) {
+    const char *figure = content(figures[i]);
+    assert_non_null(strstr(figure, "side-a"));
+    assert_non_null(strstr(figure, "side-b"));
+    assert_non_null(strstr(figure, "zero:"));
+    assert_non_null(strstr(figure, "million transitions"));
+  }
+  train("plot %s/side-a --compare %s/side --minutes --svg");
+  assert_non_null(strstr(content("%s/side/compare_win.svg"), "minutes of training"));
+  assert_int_equal(system(with_folder("echo 1,2 >> %s/side-b/eval.csv")), 0);
+  assert_refused(with_folder("plot %s/side-a %s/side-b --compare %s/side"), 1, "not a row of transitions");
+  assert_refused(with_folder("plot %s/side-a --minutes"), 2, "--compare");
+}
+
 static void evaluation_after_so_many_transitions_on_the_drive_that_is_named(void **state) {
   (void)state;
   train("train --run %s/t " SMALL
@@ -241,7 +265,7 @@ static void wrong_settings_are_refused_with_the_allowed_range(void **state) {
   assert_refused("train --set precision=bf16 --learner torch", 2, "torch computes in fp32");
   assert_refused("train --resume /nowhere", 1, "/nowhere/checkpoint");
   assert_refused("train --run /proc/none", 1, "/proc/none");
-  assert_refused("plot", 2, "name one run's folder");
+  assert_refused("plot", 2, "name a run's folder");
   assert_refused("plot /nowhere", 1, "/nowhere/progress.csv");
 }
 
@@ -327,6 +351,7 @@ int main(void) {
       cmocka_unit_test(a_checkpoint_that_is_done_trains_on_and_says_how_far),
       cmocka_unit_test(interrupting_a_run_saves_it),
       cmocka_unit_test(evaluation_is_written_beside_the_progress),
+      cmocka_unit_test(matches_of_several_runs_are_drawn_side_by_side),
       cmocka_unit_test(evaluation_after_so_many_transitions_on_the_drive_that_is_named),
       cmocka_unit_test(a_script_is_imitated_before_the_run),
       cmocka_unit_test(a_damaged_checkpoint_is_named_and_the_one_before_continues),
