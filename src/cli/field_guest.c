@@ -2,7 +2,6 @@
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli.h"
@@ -10,6 +9,7 @@
 #include "operator.h"
 #include "vsss/clock.h"
 #include "vsss/guest.h"
+#include "vsss/number.h"
 #include "vsss/robot_preset.h"
 #include "vsss/serve.h"
 #include "vsss/ssl_vision.h"
@@ -41,16 +41,25 @@ bool field_guest_is(const char *source) {
   return source && (field_guest_rest(source, &unused) || shared_rest(source, &unicast));
 }
 
+// Nothing: the port that is usual; +N: that and N, as for the simulators; else the port itself.
+static bool shared_port(const char *rest, bool unicast, int *out) {
+  int number = 0;
+  if (*rest && !vs_parse_whole(rest + (*rest == '+'), &number)) return false;
+  bool from_usual = !*rest || *rest == '+';
+  if (number < 0 || number > 65535 || (from_usual && unicast)) return false;
+  *out = from_usual ? VS_SSL_PORT + number : number;
+  return *out >= 1024 && *out <= 65535;
+}
+
 // A shared vision: its port, and to whom the commands go.
 static vs_status fill_shared(const field_guest *o, const char *rest, bool unicast, vs_guest_def *def, vs_error *err) {
   vs_dialect dialect = VS_DIALECT_FIRASIM;
   vs_ports ports = vs_ports_default();
   const char *simulator = o->radio ? field_guest_rest(o->radio, &dialect) : NULL;
-  char *end = NULL;
-  long port = *rest ? strtol(rest, &end, 10) : unicast ? 0 : VS_SSL_PORT;
-  if ((end && *end) || port < 1024 || port > 65535)
+  int port;
+  if (!shared_port(rest, unicast, &port))
     return vs_fail(err, VS_USAGE, "--camera %.60s: expected %s, 1024 to 65535", o->camera,
-                   unicast ? "vss-vision:PORT" : "ssl: or ssl:PORT");
+                   unicast ? "vss-vision:PORT" : "ssl:, ssl:PORT or ssl:+N");
   vs_status s = simulator && *simulator ? vs_ports_parse(simulator, &ports, err) : VS_OK;
   const vs_robot_preset *robot;
   if (s == VS_OK) s = vs_robot_preset_find(vs_dialect_name(dialect), &robot, err);
@@ -58,7 +67,7 @@ static vs_status fill_shared(const field_guest *o, const char *rest, bool unicas
   *def = (vs_guest_def){.wheel_radius_m = robot->wheel_radius_m,
                         .ssl = true,
                         .unicast = unicast,
-                        .vision = (int)port,
+                        .vision = port,
                         .command = dialect == VS_DIALECT_TRAVESIM ? ports.team[o->team] : ports.command,
                         .referee = ports.referee,
                         .placement = ports.placer,

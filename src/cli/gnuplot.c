@@ -47,5 +47,6 @@ void vs_gnuplot_quote(FILE *script, const char *text) {
 }
 
 void vs_gnuplot_terminal(FILE *script, bool svg, int width, int height) {
-  fprintf(script, "set terminal %s size %d,%d font 'sans,%d'\n", svg ? "svg" : "pngcairo", width, height, svg ? 14 : 12);
+  fprintf(script, "set terminal %s size %d,%d font 'sans,%d'\n", svg ? "svg" : "pngcairo", width, height,
+          svg ? 14 : 12);
 }

@@ -24,7 +24,13 @@ typedef struct league_file {
   int groups, advance; // LEAGUE_IN_GROUPS; club i plays in group i % groups; so many of each go on
   int rounds;          // each pair meets so often, half of them... both ways
   double seconds, pause_s, wait_s, silence_s; // silence_s: silent for longer in all, a club has lost
-  char division[16], rules[32], dialect[16], robot[16], drive[16], folder[LEAGUE_TEXT], ports[64];
+  char rules_name[32], folder[LEAGUE_TEXT];
+  vs_division division;
+  vs_rules rules;
+  vs_drive drive;
+  vs_dialect dialect;
+  vs_ports ports;
+  const vs_robot_preset *robot;
   bool realtime, record, own_network;
   uint64_t seed;
 } league_file;

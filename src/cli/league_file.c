@@ -49,6 +49,23 @@ static vs_status check_format(const char *path, const char *format, league_file 
   return VS_OK;
 }
 
+// What is named in the file, as it is written there.
+typedef struct words {
+  char format[24], division[16], dialect[16], robot[16], drive[16], ports[64];
+} words;
+
+static vs_status check_words(const char *path, const words *w, league_file *f, vs_error *err) {
+  f->ports = vs_ports_default();
+  vs_status s = vs_division_parse(w->division, &f->division, err);
+  if (s == VS_OK) s = vs_rules_parse(f->rules_name, &f->rules, err);
+  if (s == VS_OK) s = vs_drive_parse(w->drive, &f->drive, err);
+  if (s == VS_OK) s = vs_dialect_parse(w->dialect, &f->dialect, err);
+  if (s == VS_OK && *w->ports) s = vs_ports_parse(w->ports, &f->ports, err);
+  if (s == VS_OK) s = vs_robot_preset_find(*w->robot ? w->robot : vs_dialect_name(f->dialect), &f->robot, err);
+  if (s != VS_OK) vs_fail_prefix(err, "%s: [league]", path);
+  return s == VS_OK ? VS_OK : VS_USAGE;
+}
+
 vs_status league_file_load(const char *path, league_file *f, vs_error *err) {
   *f = (league_file){.groups = 2,
                      .advance = 2,
@@ -57,18 +74,14 @@ vs_status league_file_load(const char *path, league_file *f, vs_error *err) {
                      .pause_s = 1,
                      .wait_s = 20,
                      .silence_s = 10,
-                     .division = "3v3",
-                     .rules = "league",
-                     .dialect = "firasim",
-                     .robot = "",
-                     .drive = "contact",
+                     .rules_name = "league",
                      .folder = "league",
                      .record = true,
                      .own_network = true,
                      .seed = 1};
-  char format[24] = "round-robin";
+  words w = {.format = "round-robin", .division = "3v3", .dialect = "firasim", .drive = "contact"};
   vs_config_key schema[OWN_KEYS + LEAGUE_CLUBS * CLUB_KEYS + 1] = {
-      {"league.format", VS_CONFIG_TEXT, format, sizeof format, 0, 0, "round-robin, knockout or groups"},
+      {"league.format", VS_CONFIG_TEXT, w.format, sizeof w.format, 0, 0, "round-robin, knockout or groups"},
       {"league.groups", VS_CONFIG_INT, &f->groups, 0, 1, LEAGUE_GROUPS, "how many, of format = groups"},
       {"league.advance", VS_CONFIG_INT, &f->advance, 0, 1, LEAGUE_CLUBS, "so many of each group go on to the knockout"},
       {"league.rounds", VS_CONFIG_INT, &f->rounds, 0, 1, 100, "each pair meets so often, from both sides each time"},
@@ -76,13 +89,13 @@ vs_status league_file_load(const char *path, league_file *f, vs_error *err) {
       {"league.pause", VS_CONFIG_REAL, &f->pause_s, 0, 0, 60, "from a call to the placing, and from there to play"},
       {"league.wait", VS_CONFIG_REAL, &f->wait_s, 0, 0.1, 600, "for a club's program to be heard"},
       {"league.silence", VS_CONFIG_REAL, &f->silence_s, 0, 0.5, 600, "in all, after which a club has lost"},
-      {"league.division", VS_CONFIG_TEXT, f->division, sizeof f->division, 0, 0, "3v3 or 5v5"},
-      {"league.rules", VS_CONFIG_TEXT, f->rules, sizeof f->rules, 0, 0, "as --rules"},
-      {"league.dialect", VS_CONFIG_TEXT, f->dialect, sizeof f->dialect, 0, 0, "firasim or travesim"},
-      {"league.robot", VS_CONFIG_TEXT, f->robot, sizeof f->robot, 0, 0, "default: the dialect's"},
-      {"league.drive", VS_CONFIG_TEXT, f->drive, sizeof f->drive, 0, 0, "contact or planar"},
+      {"league.division", VS_CONFIG_TEXT, w.division, sizeof w.division, 0, 0, "3v3 or 5v5"},
+      {"league.rules", VS_CONFIG_TEXT, f->rules_name, sizeof f->rules_name, 0, 0, "as --rules"},
+      {"league.dialect", VS_CONFIG_TEXT, w.dialect, sizeof w.dialect, 0, 0, "firasim or travesim"},
+      {"league.robot", VS_CONFIG_TEXT, w.robot, sizeof w.robot, 0, 0, "default: the dialect's"},
+      {"league.drive", VS_CONFIG_TEXT, w.drive, sizeof w.drive, 0, 0, "contact or planar"},
       {"league.folder", VS_CONFIG_TEXT, f->folder, sizeof f->folder, 0, 0, "of results and logs"},
-      {"league.ports", VS_CONFIG_TEXT, f->ports, sizeof f->ports, 0, 0, "as --ports"},
+      {"league.ports", VS_CONFIG_TEXT, w.ports, sizeof w.ports, 0, 0, "as --ports"},
       {"league.realtime", VS_CONFIG_BOOL, &f->realtime, 0, 0, 0, "instead of as fast as the clubs answer"},
       {"league.own_network", VS_CONFIG_BOOL, &f->own_network, 0, 0, 0, "of the league and its programs, where allowed"},
       {"league.record", VS_CONFIG_BOOL, &f->record, 0, 0, 0, "a log of each match"},
@@ -101,5 +114,6 @@ vs_status league_file_load(const char *path, league_file *f, vs_error *err) {
   }
   vs_status s = vs_config_load(path, schema, err);
   if (s == VS_OK) s = check(path, f, err);
-  return s == VS_OK ? check_format(path, format, f, err) : s;
+  if (s == VS_OK) s = check_words(path, &w, f, err);
+  return s == VS_OK ? check_format(path, w.format, f, err) : s;
 }

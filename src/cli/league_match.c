@@ -59,19 +59,11 @@ static void end(pid_t child) {
 
 static vs_status prepare(const league_file *f, const league_result *m, vs_serve_def *def, vs_model **model,
                          vs_error *err) {
-  vs_division division;
-  vs_rules rules;
-  vs_drive drive;
   *def = vs_serve_def_default();
-  vs_status s = vs_division_parse(f->division, &division, err);
-  if (s == VS_OK) s = vs_rules_parse(f->rules, &rules, err);
-  if (s == VS_OK) s = vs_drive_parse(f->drive, &drive, err);
-  if (s == VS_OK) s = vs_dialect_parse(f->dialect, &def->dialect, err);
-  if (s == VS_OK && *f->ports) s = vs_ports_parse(f->ports, &def->ports, err);
-  if (s == VS_OK)
-    s = vs_robot_preset_find(*f->robot ? f->robot : vs_dialect_name(def->dialect), &def->match.robot, err);
-  if (s != VS_OK) return s;
-  def->match.referee = vs_referee_def_default(rules);
+  def->dialect = f->dialect;
+  def->ports = f->ports;
+  def->match.robot = f->robot;
+  def->match.referee = vs_referee_def_default(f->rules);
   vs_referee_def_lasts(&def->match.referee, f->seconds);
   def->match.referee.knockout = league_is_knockout(f, m);
   def->match.pause_s = f->pause_s;
@@ -82,11 +74,11 @@ static vs_status prepare(const league_file *f, const league_result *m, vs_serve_
     const char *uri = f->club[m->club[t]].player;
     def->match.player[t] = *uri ? uri : NULL;
   }
-  vs_model_def model_def = vs_model_def_default(drive);
-  model_def.division = division;
+  vs_model_def model_def = vs_model_def_default(f->drive);
+  model_def.division = f->division;
   model_def.frame_hz = vs_dialect_hz(def->dialect);
   model_def.substeps_per_frame = def->dialect == VS_DIALECT_TRAVESIM ? 2 : 3;
-  s = vs_model_load(&model_def, model, err);
+  vs_status s = vs_model_load(&model_def, model, err);
   def->match.model = *model;
   return s;
 }

@@ -231,7 +231,7 @@ static void write_page(const league_file *f, const league_result *r, int n, int 
       "body{font:16px sans-serif;margin:2em}table{border-collapse:collapse;margin:1em 0}"
       "td,th{border:1px solid #bbb;padding:.3em .6em;text-align:right}td:first-child,th:first-child{text-align:left}"
       "</style></head><body><h1>League</h1><p>%d of %d matches, %s rules, %g s each</p>\n",
-      n, of, f->rules, f->seconds);
+      n, of, f->rules_name, f->seconds);
   for (int g = 0; g < f->groups && f->format != LEAGUE_KNOCKOUT; g++) write_group(f, r, n, g, &rated, out);
   if (f->format != LEAGUE_ROUND_ROBIN) write_knockout(f, r, n, out);
   for (int k = 0; k < n; k++) {

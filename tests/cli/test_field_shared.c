@@ -9,6 +9,7 @@
 #include "test_folder.h"
 #include "vsss/clock.h"
 #include "vsss/league_messages.h"
+#include "vsss/ssl_vision.h"
 #include "vsss/udp.h"
 
 static int offset;
@@ -38,8 +39,8 @@ static void plays_by(int vss_vision) {
     assert_ok(vs_udp_sender("224.5.23.2", vision, NULL, &to, err));
   assert_ok(vs_udp_join("224.0.0.1", 10002 + shift, NULL, &seen, err));
   assert_ok(vs_udp_listen(20011 + shift, NULL, &commands, err));
-  snprintf(text, sizeof text, "field --go --camera %s:%d --radio firasim:+%d --publish firasim:+%d --policy emc:",
-           vss_vision ? "vss-vision" : "ssl", vision, shift, shift);
+  snprintf(text, sizeof text, "field --go --camera %s%d --radio firasim:+%d --publish firasim:+%d --policy emc:",
+           vss_vision ? "vss-vision:" : "ssl:+", vss_vision ? vision : vision - VS_SSL_PORT, shift, shift);
   snprintf(output, sizeof output, "%s/field", folder);
   pid_t field = vsss_start(output, text);
   vs_fira_environment e = {0};
@@ -95,6 +96,9 @@ static void vss_vision_without_times_is_played_by(void **state) {
 static void what_does_not_fit_is_refused(void **state) {
   (void)state;
   assert_refused("field --camera ssl:7", 2, "ssl:PORT");
+  assert_refused("field --camera ssl:+60000", 2, "ssl:+N");
+  assert_refused("field --camera ssl:+-1", 2, "ssl:+N");
+  assert_refused("field --camera vss-vision:+10", 2, "vss-vision:PORT");
   assert_refused("field --camera vss-vision:", 2, "vss-vision:PORT");
   assert_refused("field --camera ssl: --radio firasim:x=1", 2, "x=1");
   assert_refused("field --camera ssl:24999 --radio /nowhere/tty", 1, "/nowhere/tty");

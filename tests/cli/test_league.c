@@ -26,6 +26,33 @@ static void league(const char *name) {
   vsss(&run, command);
 }
 
+// Five robots a team, in the log as in the match; policies of three are refused by name.
+static void the_division_is_what_is_played(void **state) {
+  (void)state;
+  char ini[1024], command[256];
+  snprintf(ini, sizeof ini,
+           "[league]\ndivision = 5v5\nseconds = 2\npause = 0\ndrive = planar\nfolder = %s/five\nports = +%d\n"
+           "[club1]\nname = A\nplayer = emc22:\n[club2]\nname = B\nplayer = inf:\n",
+           folder, offset + 15);
+  write_file("five.ini", ini);
+  league("five.ini");
+  if (run.status != 0) fail_msg("%s", run.err);
+  snprintf(command, sizeof command, "replay '%s/five/1-A-B.log' --channel VSSS_TRUTH --json", folder);
+  vsss(&run, command);
+  run.out[strcspn(run.out, "\n")] = '\0';
+  int robots = 0;
+  for (const char *at = run.out; (at = strstr(at, "\"omega_radps\"")) != NULL; at++) robots++;
+  assert_int_equal(robots, 2 * 5);
+  snprintf(ini, sizeof ini,
+           "[league]\ndivision = 5v5\nseconds = 2\nfolder = %s/learned\nports = +%d\n"
+           "[club1]\nname = A\nplayer = onnx:\n[club2]\nname = B\nplayer = inf:\n",
+           folder, offset + 15);
+  write_file("learned.ini", ini);
+  league("learned.ini");
+  assert_int_not_equal(run.status, 0);
+  must_say(run.err, "onnx:");
+}
+
 // Two players and a program that plays, one that ends at once, one that says nothing.
 static void clubs_meet_from_both_sides_and_who_fails_is_named(void **state) {
   (void)state;
@@ -195,6 +222,8 @@ static void what_is_wrong_with_a_file_is_named(void **state) {
               "format = cup: known are round-robin, knockout and groups"},
              {"[league]\nformat = groups\n[club1]\nname = A\nplayer = zero:\n[club2]\nname = B\nplayer = zero:\n",
               "groups = 2: 2 clubs are too few"},
+             {"[league]\ndivision = 4v4\n[club1]\nname = A\nplayer = zero:\n[club2]\nname = B\nplayer = zero:\n",
+              "bad.ini: [league]: division '4v4'"},
              {"[league]\nmatches = 3\n", "matches"}};
   for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
     char command[256];
@@ -209,6 +238,7 @@ int main(void) {
   offset = 100 + (int)(getpid() % 200) * 100 + 70;
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(clubs_meet_from_both_sides_and_who_fails_is_named),
+      cmocka_unit_test(the_division_is_what_is_played),
       cmocka_unit_test(a_league_goes_on_where_it_was_stopped),
       cmocka_unit_test(a_knockout_has_byes_and_a_winner_and_goes_on_where_it_was_stopped),
       cmocka_unit_test(groups_are_followed_by_a_knockout),
