@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "gnuplot.h"
 #include "plot_compare.h"
+#include "plot_paper.h"
 
 // One picture: a name, a title, what the y axis says, and curves as columns of progress.csv ("name title" pairs).
 typedef struct figure {
@@ -129,19 +130,14 @@ static void plot_opponents(FILE *out, const opponents *o, const char *values, co
   fprintf(out, "\n");
 }
 
-// Where the paper's learned team passed its opponents, in million transitions (three a time step: 14.98 and 23.54
-// million steps, section VIII), drawn where the run got that far.
+// Drawn where the run got that far.
 static void mark_the_paper(FILE *out) {
-  static const struct {
-    double transitions_m;
-    const char *text;
-  } crossings[] = {{45.0, "paper passes INF"}, {71.0, "paper passes EMC"}};
-  for (size_t i = 0; i < sizeof crossings / sizeof *crossings; i++)
+  for (int i = 0; i < VS_PLOT_PAPER_CROSSINGS; i++)
     fprintf(out,
             "if (STATS_max >= %g) {\n  set arrow from %g, graph 0 to %g, graph 1 nohead dashtype 2 lc rgb 'gray40'\n"
             "  set label '%s' at %g, graph 0.02 rotate by 90 offset 0.7,0 textcolor rgb 'gray40'\n}\n",
-            crossings[i].transitions_m, crossings[i].transitions_m, crossings[i].transitions_m, crossings[i].text,
-            crossings[i].transitions_m);
+            vs_plot_paper[i].transitions_m, vs_plot_paper[i].transitions_m, vs_plot_paper[i].transitions_m,
+            vs_plot_paper[i].text, vs_plot_paper[i].transitions_m);
 }
 
 // Score and win rate against each opponent of the periodic evaluation, with the 95 % interval of the score.

@@ -2,11 +2,13 @@
 
 #include <errno.h>
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "gnuplot.h"
+#include "plot_paper.h"
 #include "vsss/number.h"
 #include "vsss/paths.h"
 
@@ -131,6 +133,20 @@ static const char *last_part(const char *folder) {
   return part;
 }
 
+// In the panel of the opponent that it passed, where a run got that far.
+static void mark_the_paper(FILE *script, const points *p, int opponent) {
+  double most_m = 0.0;
+  for (int i = 0; i < p->count; i++) most_m = fmax(most_m, p->at[i].transitions_m);
+  fprintf(script, "unset arrow\nunset label\n");
+  for (int i = 0; i < VS_PLOT_PAPER_CROSSINGS; i++)
+    if (!strcmp(p->opponent[opponent], vs_plot_paper[i].opponent) && most_m >= vs_plot_paper[i].transitions_m)
+      fprintf(script,
+              "set arrow from %g, graph 0 to %g, graph 1 nohead dashtype 2 lc rgb 'gray40'\n"
+              "set label '%s' at %g, graph 1.04 center textcolor rgb 'gray40'\n",
+              vs_plot_paper[i].transitions_m, vs_plot_paper[i].transitions_m, vs_plot_paper[i].text,
+              vs_plot_paper[i].transitions_m);
+}
+
 // value: 2 is what was won, 3 the score.
 static void write_figure(FILE *script, const points *p, const vs_plot_compare_def *def, const char *name, int value) {
   int rows = (p->opponents + 1) / 2;
@@ -139,6 +155,7 @@ static void write_figure(FILE *script, const points *p, const vs_plot_compare_de
   fprintf(script, value == 2 ? "set yrange [0:100]\nset ylabel '%% won'\n"
                              : "set autoscale y\nset ylabel 'goal difference per match'\n");
   for (int o = 0; o < p->opponents; o++) {
+    if (!def->minutes) mark_the_paper(script, p, o);
     fprintf(script, "set title ");
     vs_gnuplot_quote(script, p->opponent[o]);
     fprintf(script, " noenhanced\nplot ");
