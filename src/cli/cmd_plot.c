@@ -132,12 +132,11 @@ static void plot_opponents(FILE *out, const opponents *o, const char *values, co
 
 // Drawn where the run got that far.
 static void mark_the_paper(FILE *out) {
-  for (int i = 0; i < VS_PLOT_PAPER_CROSSINGS; i++)
-    fprintf(out,
-            "if (STATS_max >= %g) {\n  set arrow from %g, graph 0 to %g, graph 1 nohead dashtype 2 lc rgb 'gray40'\n"
-            "  set label '%s' at %g, graph 0.02 rotate by 90 offset 0.7,0 textcolor rgb 'gray40'\n}\n",
-            vs_plot_paper[i].transitions_m, vs_plot_paper[i].transitions_m, vs_plot_paper[i].transitions_m,
-            vs_plot_paper[i].text, vs_plot_paper[i].transitions_m);
+  for (int i = 0; i < VS_PLOT_PAPER_CROSSINGS; i++) {
+    fprintf(out, "if (STATS_max >= %g) {\n", vs_plot_paper[i].transitions_m);
+    vs_plot_mark_crossing(out, &vs_plot_paper[i], "graph 0.02 rotate by 90 offset 0.7,0");
+    fprintf(out, "}\n");
+  }
 }
 
 // Score and win rate against each opponent of the periodic evaluation, with the 95 % interval of the score.

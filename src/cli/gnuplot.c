@@ -1,7 +1,6 @@
 #include "gnuplot.h"
 
 #include <errno.h>
-#include <stdbool.h>
 #include <string.h>
 
 #include "child.h"

@@ -63,7 +63,7 @@ static vs_status check_words(const char *path, const words *w, league_file *f, v
   if (s == VS_OK && *w->ports) s = vs_ports_parse(w->ports, &f->ports, err);
   if (s == VS_OK) s = vs_robot_preset_find(*w->robot ? w->robot : vs_dialect_name(f->dialect), &f->robot, err);
   if (s != VS_OK) vs_fail_prefix(err, "%s: [league]", path);
-  return s == VS_OK ? VS_OK : VS_USAGE;
+  return s;
 }
 
 vs_status league_file_load(const char *path, league_file *f, vs_error *err) {

@@ -133,6 +133,8 @@ static const char *last_part(const char *folder) {
   return part;
 }
 
+static int panel_rows(const points *p) { return (p->opponents + 1) / 2; }
+
 // In the panel of the opponent that it passed, where a run got that far.
 static void mark_the_paper(FILE *script, const points *p, int opponent) {
   double most_m = 0.0;
@@ -140,17 +142,12 @@ static void mark_the_paper(FILE *script, const points *p, int opponent) {
   fprintf(script, "unset arrow\nunset label\n");
   for (int i = 0; i < VS_PLOT_PAPER_CROSSINGS; i++)
     if (!strcmp(p->opponent[opponent], vs_plot_paper[i].opponent) && most_m >= vs_plot_paper[i].transitions_m)
-      fprintf(script,
-              "set arrow from %g, graph 0 to %g, graph 1 nohead dashtype 2 lc rgb 'gray40'\n"
-              "set label '%s' at %g, graph 1.04 center textcolor rgb 'gray40'\n",
-              vs_plot_paper[i].transitions_m, vs_plot_paper[i].transitions_m, vs_plot_paper[i].text,
-              vs_plot_paper[i].transitions_m);
+      vs_plot_mark_crossing(script, &vs_plot_paper[i], "graph 1.04 center");
 }
 
 // value: 2 is what was won, 3 the score.
 static void write_figure(FILE *script, const points *p, const vs_plot_compare_def *def, const char *name, int value) {
-  int rows = (p->opponents + 1) / 2;
-  fprintf(script, "set output '%s.%s'\nset multiplot layout %d,%d\n", name, def->svg ? "svg" : "png", rows,
+  fprintf(script, "set output '%s.%s'\nset multiplot layout %d,%d\n", name, def->svg ? "svg" : "png", panel_rows(p),
           p->opponents > 1 ? 2 : 1);
   fprintf(script, value == 2 ? "set yrange [0:100]\nset ylabel '%% won'\n"
                              : "set autoscale y\nset ylabel 'goal difference per match'\n");
@@ -177,8 +174,7 @@ static vs_status draw(const points *p, const vs_plot_compare_def *def, const cha
   vs_gnuplot g;
   vs_status s = vs_gnuplot_begin(&g, err);
   if (s != VS_OK) return s;
-  int rows = (p->opponents + 1) / 2;
-  vs_gnuplot_terminal(g.script, def->svg, 900, 320 * rows);
+  vs_gnuplot_terminal(g.script, def->svg, 900, 320 * panel_rows(p));
   fprintf(g.script, "set grid\nset key bottom right\nset xlabel '%s'\nset xrange [0:]\n",
           def->minutes ? "minutes of training" : "million transitions");
   write_curves(g.script, p, def);
