@@ -26,48 +26,50 @@ static void league(const char *name) {
   vsss(&run, command);
 }
 
+// The file of a league as it is written with these values, played to its end.
+__attribute__((format(printf, 2, 3))) static void league_of(const char *name, const char *format, ...) {
+  char ini[8192];
+  va_list values;
+  va_start(values, format);
+  vsnprintf(ini, sizeof ini, format, values);
+  va_end(values);
+  write_file(name, ini);
+  league(name);
+  if (run.status != 0) fail_msg("%s: status %d: %s", name, run.status, run.err);
+}
+
 // Five robots a team, in the log as in the match; policies of three are refused by name.
 static void the_division_is_what_is_played(void **state) {
   (void)state;
-  char ini[1024], command[256];
-  snprintf(ini, sizeof ini,
-           "[league]\ndivision = 5v5\nseconds = 2\npause = 0\ndrive = planar\nfolder = %s/five\nports = +%d\n"
-           "[club1]\nname = A\nplayer = emc22:\n[club2]\nname = B\nplayer = inf:\n",
-           folder, offset + 15);
-  write_file("five.ini", ini);
-  league("five.ini");
-  if (run.status != 0) fail_msg("%s", run.err);
+  char command[256];
+  league_of("five.ini",
+            "[league]\ndivision = 5v5\nseconds = 2\npause = 0\ndrive = planar\nfolder = %s/five\nports = +%d\n"
+            "[club1]\nname = A\nplayer = emc22:\n[club2]\nname = B\nplayer = inf:\n",
+            folder, offset + 15);
   snprintf(command, sizeof command, "replay '%s/five/1-A-B.log' --channel VSSS_TRUTH --json", folder);
   vsss(&run, command);
   run.out[strcspn(run.out, "\n")] = '\0';
   int robots = 0;
   for (const char *at = run.out; (at = strstr(at, "\"omega_radps\"")) != NULL; at++) robots++;
   assert_int_equal(robots, 2 * 5);
-  snprintf(ini, sizeof ini,
-           "[league]\ndivision = 5v5\nseconds = 2\nfolder = %s/learned\nports = +%d\n"
-           "[club1]\nname = A\nplayer = onnx:\n[club2]\nname = B\nplayer = inf:\n",
-           folder, offset + 15);
-  write_file("learned.ini", ini);
-  league("learned.ini");
-  assert_int_not_equal(run.status, 0);
-  must_say(run.err, "onnx:");
+  write_file("learned.ini",
+             "[league]\ndivision = 5v5\n[club1]\nname = A\nplayer = onnx:\n[club2]\nname = B\nplayer = inf:\n");
+  snprintf(command, sizeof command, "league '%s/learned.ini'", folder);
+  assert_refused(command, 2, "onnx:");
 }
 
 // Two players and a program that plays, one that ends at once, one that says nothing.
 static void clubs_meet_from_both_sides_and_who_fails_is_named(void **state) {
   (void)state;
-  char self[4096], ini[8192];
+  char self[4096];
   vsss_sources(self, sizeof self);
-  snprintf(ini, sizeof ini,
-           "[league]\nseconds = 15\npause = 0\nwait = 4\ndrive = planar\nfolder = %s/out\nports = +%d\n"
-           "[club1]\nname = Zero\nplayer = zero:\n"
-           "[club2]\nname = Program\ncommand = \"exec python3 '%s/tests/serve/league_team.py'\"\n"
-           "[club3]\nname = Crash\ncommand = exit 3\n"
-           "[club4]\nname = Silent\ncommand = exec sleep 1000\n",
-           folder, offset, self);
-  write_file("all.ini", ini);
-  league("all.ini");
-  assert_int_equal(run.status, 0);
+  league_of("all.ini",
+            "[league]\nseconds = 15\npause = 0\nwait = 4\ndrive = planar\nfolder = %s/out\nports = +%d\n"
+            "[club1]\nname = Zero\nplayer = zero:\n"
+            "[club2]\nname = Program\ncommand = \"exec python3 '%s/tests/serve/league_team.py'\"\n"
+            "[club3]\nname = Crash\ncommand = exit 3\n"
+            "[club4]\nname = Silent\ncommand = exec sleep 1000\n",
+            folder, offset, self);
   must_say(run.out, "12 of 12");
   must_say(run.out, "Zero 10 : 0 Crash  Crash ended by itself (status 3)");
   must_say(run.out, "Silent 0 : 10 Zero  Silent was never heard");
@@ -92,14 +94,10 @@ static void clubs_meet_from_both_sides_and_who_fails_is_named(void **state) {
 
 static void a_league_goes_on_where_it_was_stopped(void **state) {
   (void)state;
-  char ini[1024];
-  snprintf(ini, sizeof ini,
-           "[league]\nseconds = 10\npause = 0\ndrive = planar\nrecord = no\nfolder = %s/again\nports = +%d\n"
-           "[club1]\nname = A\nplayer = emc:\n[club2]\nname = B\nplayer = zero:\n",
-           folder, offset + 10);
-  write_file("again.ini", ini);
-  league("again.ini");
-  assert_int_equal(run.status, 0);
+  league_of("again.ini",
+            "[league]\nseconds = 10\npause = 0\ndrive = planar\nrecord = no\nfolder = %s/again\nports = +%d\n"
+            "[club1]\nname = A\nplayer = emc:\n[club2]\nname = B\nplayer = zero:\n",
+            folder, offset + 10);
   static char whole[32768];
   snprintf(whole, sizeof whole, "%s", folder_file("again/results.csv"));
   // Keep the first match only: the second is played anew, to the same result.
@@ -123,16 +121,12 @@ static void a_league_goes_on_where_it_was_stopped(void **state) {
 // Five clubs: the last two play for a place among four, the first three wait. Teams that stand still: shoot-outs and lots.
 static void a_knockout_has_byes_and_a_winner_and_goes_on_where_it_was_stopped(void **state) {
   (void)state;
-  char ini[1024];
-  snprintf(
-      ini, sizeof ini,
+  league_of(
+      "cup.ini",
       "[league]\nformat = knockout\nseconds = 2\npause = 0\ndrive = planar\nrecord = no\nfolder = %s/cup\nports = +%d\n"
       "[club1]\nname = A\nplayer = zero:\n[club2]\nname = B\nplayer = zero:\n[club3]\nname = C\nplayer = zero:\n"
       "[club4]\nname = D\nplayer = emc22:\n[club5]\nname = E\nplayer = zero:\n",
       folder, offset + 20);
-  write_file("cup.ini", ini);
-  league("cup.ini");
-  assert_int_equal(run.status, 0);
   must_say(run.out, "quarter-final  D - E  0 : 0, ");
   must_say(run.out, "semi-final     A - D  0 : 0, ");
   must_say(run.out, "semi-final     B - C  0 : 0, by lot");
@@ -158,16 +152,13 @@ static void a_knockout_has_byes_and_a_winner_and_goes_on_where_it_was_stopped(vo
 // Two groups of two, A and C, B and D; the winners play the final.
 static void groups_are_followed_by_a_knockout(void **state) {
   (void)state;
-  char ini[1024];
-  snprintf(ini, sizeof ini,
-           "[league]\nformat = groups\ngroups = 2\nadvance = 1\nseconds = 30\npause = 0\ndrive = planar\nrecord = no\n"
-           "folder = %s/groups\nports = +%d\n"
-           "[club1]\nname = A\nplayer = zero:\n[club2]\nname = B\nplayer = emc22:\n[club3]\nname = C\nplayer = emc22:\n"
-           "[club4]\nname = D\nplayer = zero:\n",
-           folder, offset + 20);
-  write_file("groups.ini", ini);
-  league("groups.ini");
-  assert_int_equal(run.status, 0);
+  league_of(
+      "groups.ini",
+      "[league]\nformat = groups\ngroups = 2\nadvance = 1\nseconds = 30\npause = 0\ndrive = planar\nrecord = no\n"
+      "folder = %s/groups\nports = +%d\n"
+      "[club1]\nname = A\nplayer = zero:\n[club2]\nname = B\nplayer = emc22:\n[club3]\nname = C\nplayer = emc22:\n"
+      "[club4]\nname = D\nplayer = zero:\n",
+      folder, offset + 20);
   must_say(run.out, "5 of 5  C");
   must_say(run.out, "group A\nclub");
   must_say(run.out, "group B\nclub");
@@ -184,15 +175,12 @@ static void groups_are_followed_by_a_knockout(void **state) {
 static void programs_play_in_a_network_of_their_own_where_allowed(void **state) {
   (void)state;
   for (int own = 0; own < 2; own++) {
-    char ini[1024];
-    snprintf(ini, sizeof ini,
-             "[league]\nseconds = 2\npause = 0\nwait = 1\ndrive = planar\nrecord = no\nfolder = %s/net%d\nports = +%d\n"
-             "own_network = %s\n[club1]\nname = Looks\ncommand = \"readlink /proc/self/ns/net; cat /proc/net/dev\"\n"
-             "[club2]\nname = B\nplayer = zero:\n",
-             folder, own, offset + 30, own ? "yes" : "no");
-    write_file("net.ini", ini);
-    league("net.ini");
-    assert_int_equal(run.status, 0);
+    league_of(
+        "net.ini",
+        "[league]\nseconds = 2\npause = 0\nwait = 1\ndrive = planar\nrecord = no\nfolder = %s/net%d\nports = +%d\n"
+        "own_network = %s\n[club1]\nname = Looks\ncommand = \"readlink /proc/self/ns/net; cat /proc/net/dev\"\n"
+        "[club2]\nname = B\nplayer = zero:\n",
+        folder, own, offset + 30, own ? "yes" : "no");
     char outside[64] = "", path[64];
     snprintf(path, sizeof path, "net%d/1-Looks-B.log.blue.txt", own);
     assert_true(readlink("/proc/self/ns/net", outside, sizeof outside - 1) > 0);
