@@ -51,7 +51,8 @@ typedef struct vs_train_def {
   // The networks see another of an observation's 24 symmetric versions (vsss/observe.h), drawn anew after so many decisions
   // for each robot; 0: always the observation itself.
   int augment;
-  bool canonical; // the networks see one of the 24 symmetric versions of an observation (vsss/observe.h)
+  bool reversible; // front and back are alike: the networks see the end that faces their goal (vsss/observe.h)
+  bool canonical;  // the networks see one of the 24 symmetric versions of an observation (vsss/observe.h)
   // ONNX files: the mean over all 24 versions in place of one answer, and another gain (0: action_gain). An average is
   // smaller than what it is the average of.
   bool export_average;
@@ -74,7 +75,7 @@ vs_train_def vs_train_def_default(void); // our best recipe
 vs_status vs_train_def_preset(const char *name, vs_train_def *out, vs_error *err);
 
 // One row per setting, with its allowed range, and one per name that a setting had before, targets inside def; ended by a NULL name.
-#define VS_TRAIN_KEYS_MAX 56
+#define VS_TRAIN_KEYS_MAX 64
 void vs_train_schema(vs_train_def *def, vs_config_key keys[VS_TRAIN_KEYS_MAX]);
 // All settings as lines "key = value", as an INI file, with a comment over each if asked for; returns the length it would
 // need. VS_TRAIN_TEXT_MAX is enough for any.

@@ -53,6 +53,13 @@ VSSS_API int vs_symmetry_canonical(const float *observation /* [VS_OBS_SIZE] */)
 VSSS_API void vs_symmetry_apply(const vs_symmetry_table *table, int version, const float *observation, float *out);
 static inline int vs_symmetry_mirrored(int version) { return version / 12; } // 1: left and right wheel change places
 
+// A robot's front and back are alike: the same robot seen by its other end heads the other way, and its wheels are
+// exchanged and turn the other way. Whether the newest frame shows a robot that heads away from their goal (cos < 0), and
+// its observation as the other end sees it (out may not be observation). Seen by the end that faces their goal, the
+// heading stays within 90 degrees, away from the jump of theta/pi at 180.
+VSSS_API int vs_observation_faces_back(const float *observation /* [VS_OBS_SIZE] */); // 0 or 1
+VSSS_API void vs_observation_reverse(const float *observation, float *out);
+
 // Action in [-1, 1] <-> rad/s. A value that is not finite is VS_FAIL naming robot and wheel; others are clamped.
 VSSS_API vs_status vs_action_to_wheels(const float *action /* [3][2] */, vs_wheels out[VS_TEAM_SIZE], vs_error *err);
 VSSS_API void vs_action_from_wheels(const vs_wheels wheels[VS_TEAM_SIZE], float *action);

@@ -101,9 +101,61 @@ static int version_of(int answers) {
   return ((answers & 1) * 2 + (answers >> 1 & 1)) * 6 + 2 * first + swapped;
 }
 
-// observation[N][464] -> canonical[N][464] and, of its version, wheel_order[N][4], which undoes a mirror image in the
+// observation[N][464] -> seen[N][464], the robot by the end that faces their goal, and turned[N][1], whether that is its back
+// (vs_observation_reverse).
+static void other_end_nodes(vs_bytes *graph) {
+  static const int32_t cosine = VS_OBS_SIZE - VS_OBS_FRAME + VS_OBS_OWN_HEADING + 1;
+  static const float nought = 0.0f;
+  int32_t place[VS_OBS_SIZE];
+  float sign[VS_OBS_SIZE], less[VS_OBS_SIZE] = {0}, more[VS_OBS_SIZE] = {0};
+  for (int i = 0; i < VS_OBS_SIZE; i++) {
+    int k = i % VS_OBS_FRAME;
+    bool action = k == VS_OBS_OWN_ACTION || k == VS_OBS_OWN_ACTION + 1;
+    place[i] = !action ? i : k == VS_OBS_OWN_ACTION ? i + 1 : i - 1;
+    sign[i] = action || k == VS_OBS_OWN_HEADING || k == VS_OBS_OWN_HEADING + 1 ? -1.0f : 1.0f;
+    if (k == VS_OBS_OWN_HEADING + 2) less[i] = -1, more[i] = 1;
+  }
+  tensor_of(graph, TYPE_INT32, "heading_cosine", &cosine, 0, 1, 1);
+  tensor(graph, "nought", &nought, 0, 1, 1);
+  tensor_of(graph, TYPE_INT32, "end_place", place, 0, VS_OBS_SIZE, 0);
+  tensor(graph, "end_sign", sign, 0, VS_OBS_SIZE, 0);
+  tensor(graph, "half_turn_less", less, 0, VS_OBS_SIZE, 0);
+  tensor(graph, "half_turn_more", more, 0, VS_OBS_SIZE, 0);
+  node(graph, "Gather", (const char *[]){"observation", "heading_cosine", NULL}, (const char *[]){"facing", NULL},
+       "axis", 1);
+  node(graph, "Less", (const char *[]){"facing", "nought", NULL}, (const char *[]){"turned_round", NULL}, NULL, 0);
+  node(graph, "Gather", (const char *[]){"observation", "end_place", NULL}, (const char *[]){"end_moved", NULL}, "axis",
+       1);
+  node(graph, "Mul", (const char *[]){"end_moved", "end_sign", NULL}, (const char *[]){"end_signed", NULL}, NULL, 0);
+  node(graph, "Greater", (const char *[]){"observation", "nought", NULL}, (const char *[]){"above", NULL}, NULL, 0);
+  node(graph, "Where", (const char *[]){"above", "half_turn_less", "half_turn_more", NULL},
+       (const char *[]){"half_turn", NULL}, NULL, 0);
+  node(graph, "Add", (const char *[]){"end_signed", "half_turn", NULL}, (const char *[]){"other_end", NULL}, NULL, 0);
+  node(graph, "Where", (const char *[]){"turned_round", "other_end", "observation", NULL},
+       (const char *[]){"seen", NULL}, NULL, 0);
+}
+
+// The other end's wheels are exchanged and turn the other way: 2 u - 1 becomes its negative, alpha and beta change places.
+static void own_end_nodes(vs_bytes *graph) {
+  static const int32_t exchanged[2] = {1, 0};
+  tensor_of(graph, TYPE_INT32, "wheels_exchanged", exchanged, 0, 2, 2);
+  static const char *const from[3] = {"seen_mean", "seen_beta", "seen_alpha"}, // of which the other end's is made
+      *const own[3] = {"seen_mean", "seen_alpha", "seen_beta"}, *const to[3] = {"mean", "alpha", "beta"};
+  for (int i = 0; i < 3; i++) {
+    char other[32], way[32];
+    snprintf(other, sizeof other, "%s_exchanged", to[i]);
+    snprintf(way, sizeof way, "%s_reversed", to[i]);
+    node(graph, "Gather", (const char *[]){from[i], "wheels_exchanged", NULL}, (const char *[]){other, NULL}, "axis",
+         1);
+    if (i == 0) node(graph, "Neg", (const char *[]){other, NULL}, (const char *[]){way, NULL}, NULL, 0);
+    node(graph, "Where", (const char *[]){"turned_round", i == 0 ? way : other, own[i], NULL},
+         (const char *[]){to[i], NULL}, NULL, 0);
+  }
+}
+
+// input[N][464] -> canonical[N][464] and, of its version, wheel_order[N][4], which undoes a mirror image in the
 // network's outputs.
-static void canonical_nodes(vs_bytes *graph) {
+static void canonical_nodes(vs_bytes *graph, const char *input) {
   static const float zero = 0.0f, bits[QUESTIONS] = {1, 2, 4, 8, 16};
   static const int32_t order[2][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}};
   float question[VS_OBS_SIZE][QUESTIONS] = {{0}}, sign[ANSWERS][VS_OBS_SIZE];
@@ -126,7 +178,7 @@ static void canonical_nodes(vs_bytes *graph) {
   tensor_of(graph, TYPE_INT32, "indices", index, ANSWERS, VS_OBS_SIZE, VS_OBS_SIZE);
   tensor(graph, "signs", &sign[0][0], ANSWERS, VS_OBS_SIZE, VS_OBS_SIZE);
   tensor_of(graph, TYPE_INT32, "wheel_orders", wheels, ANSWERS, 4, 4);
-  node(graph, "MatMul", (const char *[]){"observation", "question", NULL}, (const char *[]){"doubt", NULL}, NULL, 0);
+  node(graph, "MatMul", (const char *[]){input, "question", NULL}, (const char *[]){"doubt", NULL}, NULL, 0);
   node(graph, "Greater", (const char *[]){"doubt", "zero", NULL}, (const char *[]){"truth", NULL}, NULL, 0);
   node(graph, "Cast", (const char *[]){"truth", NULL}, (const char *[]){"answer", NULL}, "to", TYPE_FLOAT);
   node(graph, "MatMul", (const char *[]){"answer", "bits", NULL}, (const char *[]){"answers", NULL}, NULL, 0);
@@ -135,13 +187,12 @@ static void canonical_nodes(vs_bytes *graph) {
   node(graph, "Gather", (const char *[]){"signs", "version", NULL}, (const char *[]){"sign", NULL}, "axis", 0);
   node(graph, "Gather", (const char *[]){"wheel_orders", "version", NULL}, (const char *[]){"wheel_order", NULL},
        "axis", 0);
-  node(graph, "GatherElements", (const char *[]){"observation", "index", NULL}, (const char *[]){"moved", NULL}, "axis",
-       1);
+  node(graph, "GatherElements", (const char *[]){input, "index", NULL}, (const char *[]){"moved", NULL}, "axis", 1);
   node(graph, "Mul", (const char *[]){"moved", "sign", NULL}, (const char *[]){"canonical", NULL}, NULL, 0);
 }
 
-// observation[N][464] -> versions[24 N][464], all symmetric versions of each row one after the other.
-static void version_nodes(vs_bytes *graph) {
+// input[N][464] -> versions[24 N][464], all symmetric versions of each row one after the other.
+static void version_nodes(vs_bytes *graph, const char *input) {
   static const int64_t row_shape[2] = {-1, VS_OBS_SIZE};
   float sign[VS_SYMMETRIES * VS_OBS_SIZE];
   int32_t index[VS_SYMMETRIES * VS_OBS_SIZE];
@@ -155,7 +206,7 @@ static void version_nodes(vs_bytes *graph) {
   tensor_of(graph, TYPE_INT32, "indices", index, 0, VS_SYMMETRIES * VS_OBS_SIZE, 0);
   tensor(graph, "signs", sign, 0, VS_SYMMETRIES * VS_OBS_SIZE, 0);
   shape(graph, "row_shape", row_shape);
-  node(graph, "Gather", (const char *[]){"observation", "indices", NULL}, (const char *[]){"moved", NULL}, "axis", 1);
+  node(graph, "Gather", (const char *[]){input, "indices", NULL}, (const char *[]){"moved", NULL}, "axis", 1);
   node(graph, "Mul", (const char *[]){"moved", "signs", NULL}, (const char *[]){"turned", NULL}, NULL, 0);
   node(graph, "Reshape", (const char *[]){"turned", "row_shape", NULL}, (const char *[]){"versions", NULL}, NULL, 0);
 }
@@ -196,7 +247,10 @@ static void beta_head(vs_bytes *graph, const vs_policy_io *io) {
   static const float one = 1.0f, limits[2] = {-1.0f, 1.0f};
   const float gain = (float)io->action_gain;
   const bool average = io->average;
-  const char *alpha = average ? "alphas" : "alpha", *beta = average ? "betas" : "beta";
+  // Of the network's one answer, or the mean of its answers; then of the robot's own end.
+  const char *mean = io->reversible ? "seen_mean" : "mean", *alpha_mean = io->reversible ? "seen_alpha" : "alpha",
+             *beta_mean = io->reversible ? "seen_beta" : "beta";
+  const char *alpha = average ? "alphas" : alpha_mean, *beta = average ? "betas" : beta_mean;
   tensor(graph, "one", &one, 0, 1, 1);
   if (io->canonical)
     node(graph, "GatherElements", (const char *[]){"head", "wheel_order", NULL}, (const char *[]){"raw", NULL}, "axis",
@@ -207,14 +261,15 @@ static void beta_head(vs_bytes *graph, const vs_policy_io *io) {
   node(graph, "Split", (const char *[]){"shape", NULL}, (const char *[]){alpha, beta, NULL}, "axis", 1);
   node(graph, "Sub", (const char *[]){alpha, beta, NULL}, (const char *[]){"difference", NULL}, NULL, 0);
   node(graph, "Add", (const char *[]){alpha, beta, NULL}, (const char *[]){"total", NULL}, NULL, 0);
-  node(graph, "Div", (const char *[]){"difference", "total", NULL}, (const char *[]){average ? "means" : "mean", NULL},
+  node(graph, "Div", (const char *[]){"difference", "total", NULL}, (const char *[]){average ? "means" : mean, NULL},
        NULL, 0);
   if (average) {
     averaging_tensors(graph);
-    mean_nodes(graph, "means", "means_flat", "mean");
-    mean_nodes(graph, alpha, "alphas_flat", "alpha");
-    mean_nodes(graph, beta, "betas_flat", "beta");
+    mean_nodes(graph, "means", "means_flat", mean);
+    mean_nodes(graph, alpha, "alphas_flat", alpha_mean);
+    mean_nodes(graph, beta, "betas_flat", beta_mean);
   }
+  if (io->reversible) own_end_nodes(graph);
   tensor(graph, "gain", &gain, 0, 1, 1);
   scalar(graph, "lowest", &limits[0]);
   scalar(graph, "highest", &limits[1]);
@@ -239,9 +294,10 @@ vs_status vs_onnx_write(const char *path, const vs_onnx_policy *policy, vs_error
                    VS_OBS_SIZE, 2 * VS_ACTION_SIZE);
   vs_bytes model = {0}, graph = {0}, opset = {0};
   const vs_policy_io *io = &policy->io;
-  if (io->canonical) canonical_nodes(&graph);
-  if (io->average) version_nodes(&graph);
-  const char *input = io->canonical ? "canonical" : io->average ? "versions" : "observation";
+  const char *input = "observation";
+  if (io->reversible) other_end_nodes(&graph), input = "seen";
+  if (io->canonical) canonical_nodes(&graph, input), input = "canonical";
+  if (io->average) version_nodes(&graph, input), input = "versions";
   for (int i = 0; i < policy->layers; i++) layer_nodes(&graph, &policy->layer[i], i, i + 1 == policy->layers, input);
   beta_head(&graph, io);
   vs_wire_text(&graph, GRAPH_NAME, policy->name);

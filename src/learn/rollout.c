@@ -64,7 +64,7 @@ static bool allocate_batch(vs_rollout *r) {
   r->log_1_u = zeroed(n * A, sizeof(float), &failed);
   r->value = zeroed(n + (size_t)r->rows, sizeof(float), &failed);
   r->end = zeroed(n, 1, &failed);
-  r->mirrored = zeroed((size_t)r->rows, sizeof *r->mirrored, &failed);
+  r->turn = zeroed((size_t)r->rows, sizeof *r->turn, &failed);
   return r->x && !failed;
 }
 
@@ -160,7 +160,7 @@ void vs_rollout_free(vs_rollout *r) {
                          r->truncated_value,
                          r->old_value,
                          r->end,
-                         r->mirrored};
+                         r->turn};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
   *r = (vs_rollout){0};
 }
@@ -172,28 +172,42 @@ static int drawn_version(const vs_rollout *r, int row) {
   return (int)vs_rng_below(&rng, VS_SYMMETRIES);
 }
 
-// What the network sees of row `row` of all (observations float[rows][VS_OBS_SIZE]); whether it is a mirror image.
-static bool show(const vs_rollout *r, const float *observations, int row, float *x) {
+// What the network sees in place of an observation: its mirror image, and the robot by its other end.
+enum { MIRRORED = 1, REVERSED = 2 };
+
+// What the network sees of row `row` of all (observations float[rows][VS_OBS_SIZE]), and how it is turned.
+static uint8_t show(const vs_rollout *r, const float *observations, int row, float *x) {
   const float *observation = observations + (size_t)row * VS_OBS_SIZE;
+  float other_end[VS_OBS_SIZE];
+  uint8_t turn = 0;
+  if (r->def.io.reversible && vs_observation_faces_back(observation)) {
+    vs_observation_reverse(observation, other_end);
+    observation = other_end;
+    turn = REVERSED;
+  }
   if (!r->def.io.canonical && !r->def.io.augment) {
     memcpy(x, observation, VS_OBS_SIZE * sizeof *x);
-    return false;
+    return turn;
   }
   int version = r->def.io.canonical ? vs_symmetry_canonical(observation) : drawn_version(r, row);
   vs_symmetry_apply(&r->symmetry, version, observation, x);
-  return vs_symmetry_mirrored(version);
+  return vs_symmetry_mirrored(version) ? turn | MIRRORED : turn;
 }
+
+// The wheel that the network's output k drives, and which way.
+static int wheel_of(uint8_t turn, int k) { return turn == MIRRORED || turn == REVERSED ? 1 - k : k; }
+static double way_of(uint8_t turn) { return turn & REVERSED ? -1.0 : 1.0; }
 
 // Draws the action of one row: number `decision` of the row's own stream, whoever computes it. Of a frozen self
 // (learning false) nothing is kept.
-static void sample_row(vs_rollout *r, const float *raw, int row, bool mirrored, size_t kept, bool learning) {
+static void sample_row(vs_rollout *r, const float *raw, int row, uint8_t turn, size_t kept, bool learning) {
   vs_rng rng = vs_rng_make(vs_seed_mix(r->def.seed, (uint64_t)r->decision), (uint64_t)row);
   double log_p = 0.0;
   for (int k = 0; k < A; k++) {
     double alpha = 1.0 + vs_softplus(raw[k]), beta = 1.0 + vs_softplus(raw[A + k]);
     double u = vs_beta_sample(alpha, beta, &rng);
-    r->io.action[row * A + (mirrored ? 1 - k : k)] =
-        (float)vs_clamp(r->def.io.action_gain * (2.0 * u - 1.0), -1.0, 1.0);
+    r->io.action[row * A + wheel_of(turn, k)] =
+        (float)(way_of(turn) * vs_clamp(r->def.io.action_gain * (2.0 * u - 1.0), -1.0, 1.0));
     if (!learning) continue;
     float log_u = (float)log(u), log_1_u = (float)log1p(-u);
     r->log_u[kept * A + (size_t)k] = log_u;
@@ -210,17 +224,17 @@ static void infer_piece(void *context, int piece, int thread) {
   bool learning = job->learning >= 0;
   size_t kept = (size_t)s->t * (size_t)r->rows + (size_t)(learning ? job->learning : 0);
   float *x = learning && s->keep ? r->x + kept * VS_OBS_SIZE : s->gathered + (size_t)thread * CHUNK * VS_OBS_SIZE;
-  bool mirrored[CHUNK];
+  uint8_t turn[CHUNK];
   for (int i = 0; i < job->count; i++) {
-    mirrored[i] = show(r, r->io.observation, job->row[i], x + (size_t)i * VS_OBS_SIZE);
-    if (learning && s->keep) r->mirrored[job->learning + i] = mirrored[i];
+    turn[i] = show(r, r->io.observation, job->row[i], x + (size_t)i * VS_OBS_SIZE);
+    if (learning && s->keep) r->turn[job->learning + i] = turn[i];
   }
   vs_net_work *work = learning ? &s->joint[thread] : &s->actor[thread];
   vs_net_forward(job->net, r->blas, job->parameters, x, job->count, work);
   for (int i = 0; i < job->count; i++) {
     size_t at = kept + (size_t)i;
     if (learning) r->value[at] = vs_value_in_reward(r->scale, work->value[i]);
-    if (s->keep && !r->watch) sample_row(r, work->raw + i * 2 * A, job->row[i], mirrored[i], at, learning);
+    if (s->keep && !r->watch) sample_row(r, work->raw + i * 2 * A, job->row[i], turn[i], at, learning);
   }
 }
 
@@ -301,7 +315,7 @@ static void watch_actions(vs_rollout *r, int t) {
   for (int i = 0; i < r->rows; i++)
     for (int k = 0; k < A; k++) {
       const float *action = r->io.action + r->row[i] * A;
-      double u = 0.5 * (action[r->mirrored[i] ? 1 - k : k] / r->def.io.action_gain + 1.0);
+      double u = 0.5 * (way_of(r->turn[i]) * action[wheel_of(r->turn[i], k)] / r->def.io.action_gain + 1.0);
       u = vs_clamp(u, edge, 1.0 - edge);
       size_t at = ((size_t)t * (size_t)r->rows + (size_t)i) * A + (size_t)k;
       r->log_u[at] = (float)log(u);

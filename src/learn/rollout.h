@@ -55,7 +55,7 @@ typedef struct vs_rollout {
   // Step-major, [steps][rows], as the network sees and draws them (policy_io.h); value [steps + 1][rows] in reward units.
   float *x, *log_u, *log_1_u, *log_p, *advantage, *target, *value, *reward, *truncated_value, *old_value;
   uint8_t *end;
-  bool *mirrored;         // [rows]: the network saw this step's observation as its mirror image
+  uint8_t *turn;          // [rows]: what the network saw of this step's observation (rollout.c)
   vs_rollout_stats stats; // of the present batch
   struct vs_rollout_scratch *scratch;
 } vs_rollout;

@@ -13,12 +13,16 @@
 #include "train_matches.h"
 
 static vs_policy_io training_io(const vs_train_def *def) {
-  return (vs_policy_io){.canonical = def->canonical, .augment = def->augment, .action_gain = def->action_gain};
+  return (vs_policy_io){.reversible = def->reversible,
+                        .canonical = def->canonical,
+                        .augment = def->augment,
+                        .action_gain = def->action_gain};
 }
 
 static vs_policy_io export_io(const vs_train_def *def) {
   double gain = def->export_gain > 0.0 ? def->export_gain : def->action_gain;
-  return (vs_policy_io){.canonical = def->canonical, .average = def->export_average, .action_gain = gain};
+  return (vs_policy_io){
+      .reversible = def->reversible, .canonical = def->canonical, .average = def->export_average, .action_gain = gain};
 }
 
 static vs_learner_def learner_def(const vs_train_def *def, const vs_net_shape *shape) {

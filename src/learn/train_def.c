@@ -59,6 +59,7 @@ vs_train_def vs_train_def_default(void) {
       .epochs = 3,
       .minibatch = 1024,
       .microbatches = 4,
+      .reversible = true,
       .canonical = false,
       .action_gain = 1.0,
       .export_average = true,
@@ -82,6 +83,7 @@ static void without_levers(vs_train_def *def) {
   snprintf(def->learning_rate_decay, sizeof def->learning_rate_decay, "linear");
   def->learning_rate_hold_m = 0.0;
   def->augment = 0;
+  def->reversible = false;
   def->canonical = false;
   def->action_gain = 1.0;
   def->export_average = false;
@@ -175,6 +177,7 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       WHOLE(microbatches, 1, 64, "parts a minibatch is computed in (results depend on it, not on threads)"),
       WHOLE(augment, 0, 1000000,
             "decisions until a robot's networks see another symmetric version, at random; 0: never"),
+      SWITCH(reversible, "networks see a robot by the end that faces their goal: front and back are alike"),
       SWITCH(canonical, "networks see the canonical one of an observation's mirror images and numberings"),
       REAL(action_gain, 1, 4, "the policy's output times this, clipped, is the wheel command"),
       SWITCH(export_average, "policy files ask the network about all 24 symmetric versions and take the mean"),

@@ -1,4 +1,5 @@
-// The 24 versions of an observation that mirror image and numbering make, and the canonical one among them.
+// The 24 versions of an observation that mirror image and numbering make, the canonical one among them, and the view from
+// a robot's other end.
 #include <string.h>
 
 #include "vsss/observe.h"
@@ -78,4 +79,20 @@ void vs_symmetry_apply(const vs_symmetry_table *table, int version, const float 
   const float *sign = table->sign[version];
   for (int frame = 0; frame < VS_OBS_STACK; frame++, observation += VS_OBS_FRAME, out += VS_OBS_FRAME)
     for (int k = 0; k < VS_OBS_FRAME; k++) out[k] = sign[k] * observation[index[k]];
+}
+
+int vs_observation_faces_back(const float *observation) {
+  return observation[VS_OBS_SIZE - VS_OBS_FRAME + VS_OBS_OWN_HEADING + 1] < 0;
+}
+
+void vs_observation_reverse(const float *observation, float *out) {
+  memcpy(out, observation, VS_OBS_SIZE * sizeof *out);
+  for (int frame = 0; frame < VS_OBS_STACK; frame++, observation += VS_OBS_FRAME, out += VS_OBS_FRAME) {
+    const float *heading = observation + VS_OBS_OWN_HEADING, *action = observation + VS_OBS_OWN_ACTION;
+    out[VS_OBS_OWN_HEADING] = -heading[0];
+    out[VS_OBS_OWN_HEADING + 1] = -heading[1];
+    out[VS_OBS_OWN_HEADING + 2] = heading[2] > 0 ? heading[2] - 1 : heading[2] + 1;
+    out[VS_OBS_OWN_ACTION] = -action[1];
+    out[VS_OBS_OWN_ACTION + 1] = -action[0];
+  }
 }

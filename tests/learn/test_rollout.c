@@ -16,6 +16,7 @@ static vs_train *open_tiny(const char *opponent, int length) {
   def.steps = 20;
   def.minibatch = 60;
   def.threads = 1;
+  def.reversible = false; // the tiny task has no robots
   vs_matches matches = tiny_matches(def.envs, length, 3);
   vs_train *train = NULL;
   assert_ok(vs_train_new_over(&def, &matches, NULL, &train, err));
@@ -105,6 +106,33 @@ static void augmented_rows_see_versions_that_change_now_and_then(void **state) {
   vs_train_free(t);
 }
 
+// A robot that heads away from their goal is seen by its other end, mirrored or not, and driven by it.
+static void a_robot_that_faces_back_is_driven_by_its_other_end(void **state) {
+  (void)state;
+  vs_train *t = open_tiny("self", 7);
+  vs_rollout *r = &t->rollout;
+  r->def.io = (vs_policy_io){.reversible = true, .canonical = true, .action_gain = 1.0};
+  assert_ok(t->matches.reset(t->matches.self, &r->io, err));
+  for (int row = 0; row < r->rows; row++) {
+    float *newest = r->io.observation + (row + 1) * VS_OBS_SIZE - VS_OBS_FRAME;
+    newest[VS_OBS_OWN_HEADING + 1] = row % 2 ? -0.5f : 0.5f;
+    newest[VS_OBS_BALL_XY + 1] = row / 2 % 2 ? -0.5f : 0.5f;
+    newest[VS_OBS_OWN_ACTION] = 0.25f;
+  }
+  vs_rollout_begin(r);
+  vs_rollout_act(r, 0, t->learner.parameters);
+  for (int row = 0; row < r->rows; row++) {
+    const float *newest = r->x + (row + 1) * VS_OBS_SIZE - VS_OBS_FRAME, *action = r->io.action + 2 * row;
+    int back = row % 2, swapped = back ^ (row / 2 % 2);
+    double way = back ? -1 : 1;
+    assert_near(newest[VS_OBS_OWN_HEADING + 1], 0.5, 0);
+    assert_near(newest[VS_OBS_OWN_ACTION + swapped], 0.25 * way, 0);
+    assert_near(action[swapped], way * command(t, r->log_u[2 * row]), 1e-6);
+    assert_near(action[!swapped], way * command(t, r->log_u[2 * row + 1]), 1e-6);
+  }
+  vs_train_free(t);
+}
+
 // Each row draws from its own stream: an action depends on seed, decision and row, not on who else plays.
 static void the_present_policy_plays_the_same_whatever_the_opponents(void **state) {
   (void)state;
@@ -124,6 +152,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(episodes_terminate_by_goals_or_are_truncated_and_rewards_are_the_weighted_terms),
       cmocka_unit_test(a_mirrored_observation_drives_mirrored_wheels),
+      cmocka_unit_test(a_robot_that_faces_back_is_driven_by_its_other_end),
       cmocka_unit_test(augmented_rows_see_versions_that_change_now_and_then),
       cmocka_unit_test(the_present_policy_plays_the_same_whatever_the_opponents),
   };

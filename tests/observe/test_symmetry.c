@@ -1,8 +1,10 @@
 // Tests src/observe/symmetry.c: the observation of a situation, of its mirror image and of any numbering of the others
-// have the same canonical version.
+// have the same canonical version; a robot turned round is the same robot seen by its other end.
+#include <math.h>
 #include <string.h>
 
 #include "assert_near.h"
+#include "vsss/geom.h"
 #include "vsss/observe.h"
 #include "vsss/rng.h"
 
@@ -133,10 +135,38 @@ static void the_mirror_image_turns_y_and_exchanges_the_wheels(void **state) {
   for (int k = 0; k < VS_TEAM_SIZE; k++) assert_near(out[VS_OBS_ADVERSARIES_XY + 2 * k], (k + 1) * 0.1 / 0.85, 1e-6);
 }
 
+// The robot put the other way round, its wheels exchanged and turning the other way: what its other end sees.
+static void a_robot_turned_round_observes_what_its_other_end_sees(void **state) {
+  (void)state;
+  vs_rng rng = vs_rng_make(4, 0);
+  int backs = 0;
+  for (int n = 0; n < SITUATIONS; n++) {
+    moment original[FRAMES], round[FRAMES];
+    float seen[VS_OBS_SIZE], expected[VS_OBS_SIZE], out[VS_OBS_SIZE];
+    for (int k = 0; k < FRAMES; k++) {
+      draw(&rng, &original[k]);
+      round[k] = original[k];
+      round[k].view.robot[VS_OWN][0].pose.theta_rad += VS_PI;
+      round[k].action[0][0] = -original[k].action[0][1];
+      round[k].action[0][1] = -original[k].action[0][0];
+    }
+    observe(original, seen);
+    observe(round, expected);
+    vs_observation_reverse(seen, out);
+    for (int i = 0; i < VS_OBS_SIZE; i++) assert_near(out[i], expected[i], 2e-6);
+    assert_int_equal(vs_observation_faces_back(seen),
+                     cos(original[FRAMES - 1].view.robot[VS_OWN][0].pose.theta_rad) < 0);
+    assert_int_equal(vs_observation_faces_back(out), !vs_observation_faces_back(seen));
+    backs += vs_observation_faces_back(seen);
+  }
+  assert_in_range(backs, SITUATIONS / 4, SITUATIONS * 3 / 4);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(all_24_versions_of_a_situation_have_one_canonical_observation),
       cmocka_unit_test(the_mirror_image_turns_y_and_exchanges_the_wheels),
+      cmocka_unit_test(a_robot_turned_round_observes_what_its_other_end_sees),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -181,6 +181,43 @@ static void an_averaging_policy_agrees_with_plain_c_and_is_symmetric(void **stat
   free(parameters);
 }
 
+// A file that sees the robot by the end that faces their goal, with the average as well, against the same in plain C. A
+// robot turned round by 180 degrees, its wheels told the opposite, does the same.
+static void a_reversible_policy_agrees_with_plain_c_whichever_way_the_robot_faces(void **state) {
+  (void)state;
+  enum { N = 60 };
+  vs_net net;
+  float *parameters, *obs = malloc(N * VS_OBS_SIZE * sizeof *obs), *turned = malloc(N * VS_OBS_SIZE * sizeof *obs);
+  float action[N * 2], turned_action[N * 2];
+  vs_rng rng = vs_rng_make(11, 0);
+  make_net(&net, &parameters);
+  for (int average = 0; average < 2; average++) {
+    vs_player *player = NULL;
+    write_model_with(&net, parameters, (vs_policy_io){.reversible = true, .average = average, .action_gain = 1.5});
+    assert_ok(open_file(&player, err));
+    int backs = 0;
+    for (int i = 0; i < N * VS_OBS_SIZE; i++) obs[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
+    assert_ok(vs_player_act(player, obs, N, action, err));
+    for (int i = 0; i < N; i++) {
+      int back = vs_observation_faces_back(obs + i * VS_OBS_SIZE);
+      vs_observation_reverse(obs + i * VS_OBS_SIZE, turned + i * VS_OBS_SIZE);
+      backs += back;
+      if (average) continue;
+      double mean[2];
+      plain_forward(&net, parameters, (back ? turned : obs) + i * VS_OBS_SIZE, mean);
+      for (int k = 0; k < 2; k++)
+        assert_near(action[2 * i + k], fmin(fmax(1.5 * (back ? -mean[1 - k] : mean[k]), -1.0), 1.0), 2e-5);
+    }
+    assert_in_range(backs, N / 4, 3 * N / 4);
+    assert_ok(vs_player_act(player, turned, N, turned_action, err));
+    for (int i = 0; i < 2 * N; i++) assert_near(turned_action[i ^ 1], -action[i], 1e-5);
+    vs_player_close(player);
+  }
+  free(turned);
+  free(obs);
+  free(parameters);
+}
+
 static void expect_refusal(const char *why) {
   vs_player *player = NULL;
   vs_error err = {0};
@@ -326,6 +363,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(onnx_runtime_agrees_with_plain_c_on_1000_observations),
       cmocka_unit_test(a_canonical_amplified_policy_agrees_with_plain_c),
+      cmocka_unit_test(a_reversible_policy_agrees_with_plain_c_whichever_way_the_robot_faces),
       cmocka_unit_test(an_averaging_policy_agrees_with_plain_c_and_is_symmetric),
       cmocka_unit_test(a_truncated_file_is_refused_at_every_length),
       cmocka_unit_test(a_model_of_another_contract_is_refused),
