@@ -81,12 +81,13 @@ static void the_learning_rate_falls_as_it_is_set(void **state) {
   assert_string_equal(err.text, "learning_rate_decay = cosine: expected linear or exponential");
 }
 
-// Checkpoints of before the setting fell linearly.
+// Checkpoints of before the settings fell linearly and saw robots as they headed.
 static void runs_of_before_go_on_as_they_were(void **state) {
   (void)state;
   vs_train_def def = vs_train_def_default();
   vs_train_def_before(&def);
   assert_string_equal(def.learning_rate_decay, "linear");
+  assert_false(def.reversible);
 }
 
 static void names_of_before_are_still_read(void **state) {
