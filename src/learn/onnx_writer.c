@@ -101,8 +101,8 @@ static int version_of(int answers) {
   return ((answers & 1) * 2 + (answers >> 1 & 1)) * 6 + 2 * first + swapped;
 }
 
-// observation[N][464] -> seen[N][464], the robot by the end that faces their goal, and turned[N][1], whether that is its back
-// (vs_observation_reverse).
+// observation[N][464] -> seen[N][464], the robot by the end that faces their goal, and turned_round[N][1],
+// whether that is its back (vs_observation_reverse).
 static void other_end_nodes(vs_bytes *graph) {
   static const int32_t cosine = VS_OBS_SIZE - VS_OBS_FRAME + VS_OBS_OWN_HEADING + 1;
   static const float nought = 0.0f;
