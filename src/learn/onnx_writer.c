@@ -105,7 +105,6 @@ static int version_of(int answers) {
 // whether that is its back (vs_observation_reverse).
 static void other_end_nodes(vs_bytes *graph) {
   static const int32_t cosine = VS_OBS_SIZE - VS_OBS_FRAME + VS_OBS_OWN_HEADING + 1;
-  static const float nought = 0.0f;
   int32_t place[VS_OBS_SIZE];
   float sign[VS_OBS_SIZE], less[VS_OBS_SIZE] = {0}, more[VS_OBS_SIZE] = {0};
   for (int i = 0; i < VS_OBS_SIZE; i++) {
@@ -116,18 +115,17 @@ static void other_end_nodes(vs_bytes *graph) {
     if (k == VS_OBS_OWN_HEADING + 2) less[i] = -1, more[i] = 1;
   }
   tensor_of(graph, TYPE_INT32, "heading_cosine", &cosine, 0, 1, 1);
-  tensor(graph, "nought", &nought, 0, 1, 1);
   tensor_of(graph, TYPE_INT32, "end_place", place, 0, VS_OBS_SIZE, 0);
   tensor(graph, "end_sign", sign, 0, VS_OBS_SIZE, 0);
   tensor(graph, "half_turn_less", less, 0, VS_OBS_SIZE, 0);
   tensor(graph, "half_turn_more", more, 0, VS_OBS_SIZE, 0);
   node(graph, "Gather", (const char *[]){"observation", "heading_cosine", NULL}, (const char *[]){"facing", NULL},
        "axis", 1);
-  node(graph, "Less", (const char *[]){"facing", "nought", NULL}, (const char *[]){"turned_round", NULL}, NULL, 0);
+  node(graph, "Less", (const char *[]){"facing", "zero", NULL}, (const char *[]){"turned_round", NULL}, NULL, 0);
   node(graph, "Gather", (const char *[]){"observation", "end_place", NULL}, (const char *[]){"end_moved", NULL}, "axis",
        1);
   node(graph, "Mul", (const char *[]){"end_moved", "end_sign", NULL}, (const char *[]){"end_signed", NULL}, NULL, 0);
-  node(graph, "Greater", (const char *[]){"observation", "nought", NULL}, (const char *[]){"above", NULL}, NULL, 0);
+  node(graph, "Greater", (const char *[]){"observation", "zero", NULL}, (const char *[]){"above", NULL}, NULL, 0);
   node(graph, "Where", (const char *[]){"above", "half_turn_less", "half_turn_more", NULL},
        (const char *[]){"half_turn", NULL}, NULL, 0);
   node(graph, "Add", (const char *[]){"end_signed", "half_turn", NULL}, (const char *[]){"other_end", NULL}, NULL, 0);
@@ -156,7 +154,7 @@ static void own_end_nodes(vs_bytes *graph) {
 // input[N][464] -> canonical[N][464] and, of its version, wheel_order[N][4], which undoes a mirror image in the
 // network's outputs.
 static void canonical_nodes(vs_bytes *graph, const char *input) {
-  static const float zero = 0.0f, bits[QUESTIONS] = {1, 2, 4, 8, 16};
+  static const float bits[QUESTIONS] = {1, 2, 4, 8, 16};
   static const int32_t order[2][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}};
   float question[VS_OBS_SIZE][QUESTIONS] = {{0}}, sign[ANSWERS][VS_OBS_SIZE];
   int32_t index[ANSWERS][VS_OBS_SIZE], wheels[ANSWERS][4];
@@ -172,7 +170,6 @@ static void canonical_nodes(vs_bytes *graph, const char *input) {
     }
     for (int i = 0; i < 4; i++) wheels[a][i] = order[vs_symmetry_mirrored(version)][i];
   }
-  tensor(graph, "zero", &zero, 0, 1, 1);
   tensor(graph, "question", &question[0][0], VS_OBS_SIZE, QUESTIONS, QUESTIONS);
   tensor(graph, "bits", bits, 0, QUESTIONS, QUESTIONS);
   tensor_of(graph, TYPE_INT32, "indices", index, ANSWERS, VS_OBS_SIZE, VS_OBS_SIZE);
@@ -295,6 +292,8 @@ vs_status vs_onnx_write(const char *path, const vs_onnx_policy *policy, vs_error
   vs_bytes model = {0}, graph = {0}, opset = {0};
   const vs_policy_io *io = &policy->io;
   const char *input = "observation";
+  const float zero = 0.0f;
+  if (io->reversible || io->canonical) tensor(&graph, "zero", &zero, 0, 1, 1);
   if (io->reversible) other_end_nodes(&graph), input = "seen";
   if (io->canonical) canonical_nodes(&graph, input), input = "canonical";
   if (io->average) version_nodes(&graph, input), input = "versions";

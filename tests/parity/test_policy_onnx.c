@@ -181,8 +181,8 @@ static void an_averaging_policy_agrees_with_plain_c_and_is_symmetric(void **stat
   free(parameters);
 }
 
-// A file that sees the robot by the end that faces their goal, with the average as well, against the same in plain C. A
-// robot turned round by 180 degrees, its wheels told the opposite, does the same.
+// A file that sees the robot by the end that faces their goal, against the same in plain C. A robot turned round by 180
+// degrees, its wheels told the opposite, does the same, with the average and with the canonical version too.
 static void a_reversible_policy_agrees_with_plain_c_whichever_way_the_robot_faces(void **state) {
   (void)state;
   enum { N = 60 };
@@ -191,9 +191,13 @@ static void a_reversible_policy_agrees_with_plain_c_whichever_way_the_robot_face
   float action[N * 2], turned_action[N * 2];
   vs_rng rng = vs_rng_make(11, 0);
   make_net(&net, &parameters);
-  for (int average = 0; average < 2; average++) {
+  enum { PLAIN, AVERAGE, CANONICAL, KINDS };
+  for (int kind = 0; kind < KINDS; kind++) {
     vs_player *player = NULL;
-    write_model_with(&net, parameters, (vs_policy_io){.reversible = true, .average = average, .action_gain = 1.5});
+    write_model_with(
+        &net, parameters,
+        (vs_policy_io){
+            .reversible = true, .average = kind == AVERAGE, .canonical = kind == CANONICAL, .action_gain = 1.5});
     assert_ok(open_file(&player, err));
     int backs = 0;
     for (int i = 0; i < N * VS_OBS_SIZE; i++) obs[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
@@ -202,7 +206,7 @@ static void a_reversible_policy_agrees_with_plain_c_whichever_way_the_robot_face
       int back = vs_observation_faces_back(obs + i * VS_OBS_SIZE);
       vs_observation_reverse(obs + i * VS_OBS_SIZE, turned + i * VS_OBS_SIZE);
       backs += back;
-      if (average) continue;
+      if (kind != PLAIN) continue;
       double mean[2];
       plain_forward(&net, parameters, (back ? turned : obs) + i * VS_OBS_SIZE, mean);
       for (int k = 0; k < 2; k++)
