@@ -20,7 +20,7 @@ typedef struct vs_train_def {
   // Matches.
   char drive[16];     // planar or contact
   char realism[256];  // INI file of sensors and dynamics; empty: the paper's noise only
-  char placement[16]; // random or paper
+  char placement[16]; // random, paper or mixed
   double episode_s;
   double still_distance_m;                           // a ball that stays within it lies still; 0.02 by the rules
   char predicts[16];                                 // who sees the world moved on by the delay (vsss/env.h)

@@ -21,7 +21,7 @@ extern "C" {
 #endif
 
 typedef enum vs_rules { VS_RULES_PAPER, VS_RULES_LEAGUE, VS_RULES_SERIE_A_2023, VS_RULES_LARC_2026 } vs_rules;
-typedef enum vs_placement_mode { VS_PLACEMENT_PAPER, VS_PLACEMENT_RANDOM } vs_placement_mode;
+typedef enum vs_placement_mode { VS_PLACEMENT_PAPER, VS_PLACEMENT_RANDOM, VS_PLACEMENT_MIXED } vs_placement_mode;
 
 // Paper: a ball that has not moved 2 cm for 10 s. League: a ball slower than 0.1 m/s for 5 s, a foul in an area for 3 s,
 // a robot's centre within 1.5 robots of 7.5 cm counts as being at the ball.
@@ -128,7 +128,8 @@ VSSS_API void vs_referee_restarted(vs_referee *referee, const vs_world *world);
 // Legal poses for the restart that event calls for (a goal is followed by the conceding side's kick-off), everything at
 // rest; time_us and seq are before's. PAPER: the fixed positions, rng is not used; robot 0 keeps the goal and, at a
 // penalty, stands on its line pointed straight at the ball. RANDOM: the ball where the restart puts it, robots anywhere
-// the rules allow, roles and headings random. Events without a placement (NONE, END, HALT) give before itself.
+// the rules allow, roles and headings random. MIXED: each restart one or the other, half and half. Events without a
+// placement (NONE, END, HALT) give before itself.
 VSSS_API void vs_place(vs_placement_mode mode, const vs_event *event, const vs_world *before, vs_rng *rng,
                        vs_world *out);
 
@@ -152,7 +153,7 @@ VSSS_API void vs_place_open_play(const vs_world *before, vs_rng *rng, vs_world *
 
 // "paper", "league", "serie-a-2023", "larc-2026"
 VSSS_API vs_status vs_rules_parse(const char *name, vs_rules *out, vs_error *err);
-VSSS_API vs_status vs_placement_parse(const char *name, vs_placement_mode *out, vs_error *err); // "paper", "random"
+VSSS_API vs_status vs_placement_parse(const char *name, vs_placement_mode *out, vs_error *err); // "paper", "random", "mixed"
 
 #ifdef __cplusplus
 }

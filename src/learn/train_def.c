@@ -136,7 +136,7 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       TEXT(drive, "planar (fast) or contact (the reference)"),
       TEXT(realism, "INI file of sensors and dynamics, drawn anew each episode"),
       TEXT(predicts, "who sees the world moved on by the delay: learned, none or all"),
-      TEXT(placement, "restarts: random (legal poses) or paper"),
+      TEXT(placement, "restarts: random (legal poses), paper, or mixed: each one or the other"),
       REAL(episode_s, 1, 600, "an episode ends here, or at the first goal"),
       REAL(still_distance_m, 0.001, 1, "a ball that stays within this distance lies still (a jam, a duel at the wall)"),
       REAL(still_low_s, 0.5, 60, "free ball after so many seconds of a still ball, drawn for each episode"),

@@ -305,7 +305,8 @@ void vs_place(vs_placement_mode mode, const vs_event *event, const vs_world *bef
   if (!restart_of(before->division, event, &r)) return;
 
   vs_pose pose[VS_TEAMS][VS_TEAM_MOST];
-  if (mode == VS_PLACEMENT_RANDOM)
+  bool random = mode == VS_PLACEMENT_RANDOM || (mode == VS_PLACEMENT_MIXED && vs_rng_below(rng, 2) == 0);
+  if (random)
     random_poses(&r, rng, pose);
   else
     fixed_poses(&r, pose);

@@ -272,9 +272,11 @@ vs_status vs_rules_parse(const char *name, vs_rules *out, vs_error *err) {
 }
 
 vs_status vs_placement_parse(const char *name, vs_placement_mode *out, vs_error *err) {
-  bool random = strcmp(name, "random") == 0;
-  if (!random && strcmp(name, "paper") != 0)
-    return vs_fail(err, VS_USAGE, "placement '%.80s': known are paper and random", name);
-  *out = random ? VS_PLACEMENT_RANDOM : VS_PLACEMENT_PAPER;
-  return VS_OK;
+  static const char *const names[] = {"paper", "random", "mixed"};
+  for (int k = VS_PLACEMENT_PAPER; k <= VS_PLACEMENT_MIXED; k++) {
+    if (strcmp(name, names[k]) != 0) continue;
+    *out = (vs_placement_mode)k;
+    return VS_OK;
+  }
+  return vs_fail(err, VS_USAGE, "placement '%.80s': known are paper, random and mixed", name);
 }

@@ -303,6 +303,23 @@ static void no_random_placement_is_at_once_whistled_again(void **state) {
   }
 }
 
+static void mixed_placements_are_the_papers_half_of_the_time_and_otherwise_random(void **state) {
+  (void)state;
+  vs_rng rng = vs_rng_make(13, 0);
+  for (int k = 0; k < RESTARTS; k++) {
+    vs_world paper = placed(VS_PLACEMENT_PAPER, restarts[k].kind, restarts[k].kicker, restarts[k].quadrant, NULL);
+    int fixed = 0, last = 0, changes = 0;
+    for (int n = 0; n < 200; n++) {
+      vs_world w = placed(VS_PLACEMENT_MIXED, restarts[k].kind, restarts[k].kicker, restarts[k].quadrant, &rng);
+      assert_legal(&w, restarts[k].kind, restarts[k].kicker, restarts[k].quadrant);
+      int same = memcmp(&w, &paper, sizeof w) == 0;
+      fixed += same, changes += same != last, last = same;
+    }
+    assert_in_range(fixed, 70, 130);   // 100 expected
+    assert_in_range(changes, 70, 130); // drawn for each restart
+  }
+}
+
 // 10 to 30 cm from the ball, and both ends are reached.
 static void a_random_kicker_stands_10_to_30_cm_behind_the_ball(void **state) {
   (void)state;
@@ -449,6 +466,7 @@ int main(void) {
       cmocka_unit_test(ten_thousand_random_placements_are_legal),
       cmocka_unit_test(open_play_is_legal_and_a_third_of_it_at_the_walls),
       cmocka_unit_test(no_random_placement_is_at_once_whistled_again),
+      cmocka_unit_test(mixed_placements_are_the_papers_half_of_the_time_and_otherwise_random),
       cmocka_unit_test(a_random_kicker_stands_10_to_30_cm_behind_the_ball),
       cmocka_unit_test(random_roles_and_headings_are_all_drawn_and_depend_on_the_seed_alone),
   };

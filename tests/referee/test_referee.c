@@ -159,7 +159,10 @@ static void names_are_parsed_and_unknown_ones_refused(void **state) {
   assert_string_equal(err.text, "rules 'fifa': known are paper, league, serie-a-2023 and larc-2026");
   assert_ok(vs_placement_parse("random", &mode, err));
   assert_int_equal(mode, VS_PLACEMENT_RANDOM);
+  assert_ok(vs_placement_parse("mixed", &mode, err));
+  assert_int_equal(mode, VS_PLACEMENT_MIXED);
   assert_int_equal(vs_placement_parse("", &mode, &err), VS_USAGE);
+  assert_string_equal(err.text, "placement '': known are paper, random and mixed");
 }
 
 int main(void) {
