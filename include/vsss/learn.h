@@ -169,10 +169,10 @@ typedef struct vs_train_opponent {
 int vs_train_opponents(const vs_train *train, vs_train_opponent *out, int max);
 
 // Checkpoints. Written atomically; the one before is kept as FILE.previous. Before the first update they hold the networks
-// alone. vs_train_load continues a run of the same
-// settings (its def is the one of vs_train_read_def) and falls back to FILE.previous where FILE is damaged; note (may be
-// NULL, 256 bytes) then says why, else it is empty. In a group rank 0 reads and all continue from its file; the other
-// ranks' matches start anew.
+// alone. vs_train_load continues a run (its def is the one of vs_train_read_def, or that with changed settings: where the
+// matches are not as before they start anew, and with another mix of opponents the pool of earlier selves too) and falls
+// back to FILE.previous where FILE is damaged; note (may be NULL, 256 bytes) then says so, else it is empty. In a group
+// rank 0 reads and all continue from its file; the other ranks' matches start anew.
 vs_status vs_train_save(vs_train *train, const char *path, vs_error *err);
 // Without matches and league (4.5 MB at 464-256-256): a run that continues from it meets itself as it is now first.
 vs_status vs_train_save_slim(vs_train *train, const char *path, vs_error *err);

@@ -153,7 +153,8 @@ VSSS_API void vs_place_open_play(const vs_world *before, vs_rng *rng, vs_world *
 
 // "paper", "league", "serie-a-2023", "larc-2026"
 VSSS_API vs_status vs_rules_parse(const char *name, vs_rules *out, vs_error *err);
-VSSS_API vs_status vs_placement_parse(const char *name, vs_placement_mode *out, vs_error *err); // "paper", "random", "mixed"
+VSSS_API vs_status vs_placement_parse(const char *name, vs_placement_mode *out,
+                                      vs_error *err); // "paper", "random", "mixed"
 
 #ifdef __cplusplus
 }

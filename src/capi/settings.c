@@ -18,7 +18,7 @@ static void schema_of(capi_settings *d, vs_config_key keys[CAPI_SETTINGS_MAX]) {
       SEED(seed, "everything random follows from it"),
       TEXT(drive, "planar (fast) or contact (the reference)"),
       TEXT(rules, "paper or league"),
-      TEXT(placement, "restarts: random (legal poses) or paper"),
+      TEXT(placement, "restarts: random (legal poses), paper, or mixed: each one or the other"),
       REAL(episode_s, 0, 3600, "an episode ends here; 0: 40 s, or a match's length where goals do not end it"),
       TEXT(realism, "INI file of sensors and dynamics, drawn anew each episode; empty: the paper's noise"),
       TEXT(predicts, "who sees the world moved on by the delay: learned (and whoever calls), none or all"),

@@ -26,7 +26,7 @@ vs_match_flags_default(void); // contact drive, paper rules and their length, se
       {"rules", VS_FLAG_TEXT, &(m).rules, "NAME", "paper, league (the network referee's), serie-a-2023 or larc-2026", 0, \
        0},                                                                                                               \
       {"knockout", VS_FLAG_SWITCH, &(m).knockout, NULL, "a tie is followed by extra time and a shoot-out", 0, 0},        \
-      {"placement", VS_FLAG_TEXT, &(m).placement, "NAME", "of restarts: paper, random or mixed", 0, 0},                         \
+      {"placement", VS_FLAG_TEXT, &(m).placement, "NAME", "of restarts: paper, random or mixed", 0, 0},                  \
       {"predicts",                                                                                                       \
        VS_FLAG_TEXT,                                                                                                     \
        &(m).predicts,                                                                                                    \

@@ -9,6 +9,7 @@
 #include "archive.h"
 #include "league_file.h"
 #include "train_internal.h"
+#include "train_matches.h"
 #include "vsss/check.h"
 #include "vsss/contract.h"
 
@@ -140,25 +141,28 @@ static vs_status check_contract(const vs_bytes *archive, const char *path, vs_er
   return s;
 }
 
+static vs_status load_def(const vs_bytes *archive, const char *path, vs_train_def *out, vs_error *err) {
+  vs_found found;
+  vs_status s = check_contract(archive, path, err);
+  if (s == VS_OK) s = vs_archive_find(archive, path, &settings_section, 0, &found, err);
+  if (s != VS_OK) return s;
+  char text[VS_TRAIN_TEXT_MAX];
+  int length = (int)(found.size < sizeof text ? found.size : sizeof text - 1);
+  snprintf(text, sizeof text, "%.*s", length, (const char *)found.data);
+  vs_config_key keys[VS_TRAIN_KEYS_MAX];
+  *out = vs_train_def_default();
+  vs_train_def_before(out);
+  vs_train_schema(out, keys);
+  s = vs_config_parse(path, text, keys, err);
+  return s == VS_OK ? VS_OK : vs_fail_prefix(err, "a setting of a newer vsss");
+}
+
 vs_status vs_train_read_def(const char *path, vs_train_def *out, vs_error *err) {
   vs_bytes archive;
   char used[PATH_MAX];
-  vs_found found;
   vs_status s = read_either(path, &archive, used, sizeof used, NULL, err);
   if (s != VS_OK) return s;
-  s = check_contract(&archive, used, err);
-  if (s == VS_OK) s = vs_archive_find(&archive, used, &settings_section, 0, &found, err);
-  if (s == VS_OK) {
-    char text[VS_TRAIN_TEXT_MAX];
-    int length = (int)(found.size < sizeof text ? found.size : sizeof text - 1);
-    snprintf(text, sizeof text, "%.*s", length, (const char *)found.data);
-    vs_config_key keys[VS_TRAIN_KEYS_MAX];
-    *out = vs_train_def_default();
-    vs_train_def_before(out);
-    vs_train_schema(out, keys);
-    s = vs_config_parse(used, text, keys, err);
-    if (s != VS_OK) s = vs_fail_prefix(err, "a setting of a newer vsss");
-  }
+  s = load_def(&archive, used, out, err);
   vs_bytes_free(&archive);
   return s;
 }
@@ -216,11 +220,23 @@ static vs_status share_archive(const vs_group *g, vs_status status, vs_bytes *ar
   return g->broadcast(g->self, archive->data, archive->size, err);
 }
 
-static vs_status load(vs_train *t, const vs_bytes *archive, const char *path, vs_error *err) {
+// The league of the file, as far as the run's own settings are those of before: other matches share out its earlier selves
+// anew, another mix of opponents begins with the networks as they are, as do the files without a league.
+static vs_status load_league(vs_train *t, const vs_bytes *archive, const char *path, const vs_train_def *before,
+                             vs_error *err) {
+  vs_found found;
+  if (vs_archive_has(archive, "league", &found) && strcmp(before->opponent, t->def.opponent) == 0)
+    return vs_league_load(&t->league, archive, path, before->envs != t->def.envs, err);
+  vs_train_hand_over(t);
+  return VS_OK;
+}
+
+static vs_status load(vs_train *t, const vs_bytes *archive, const char *path, char *note, vs_error *err) {
   vs_found found;
   counters numbers;
+  vs_train_def before;
   vs_learner *l = &t->learner;
-  vs_status s = check_contract(archive, path, err);
+  vs_status s = load_def(archive, path, &before, err);
   if (s == VS_OK) s = vs_archive_find(archive, path, &counters_section, sizeof numbers, &found, err);
   if (s != VS_OK) return s;
   memcpy(&numbers, found.data, sizeof numbers);
@@ -229,14 +245,18 @@ static vs_status load(vs_train *t, const vs_bytes *archive, const char *path, vs
   s = load_floats(archive, path, &parameters_section, l->parameters, l->net.size, err);
   if (s == VS_OK) s = load_floats(archive, path, &m_section, l->m, l->net.size, err);
   if (s == VS_OK) s = load_floats(archive, path, &v_section, l->v, l->net.size, err);
-  bool slim = !vs_archive_has(archive, "league", &found);
-  if (s == VS_OK && !slim) s = vs_league_load(&t->league, archive, path, err);
-  if (s == VS_OK && slim) vs_train_hand_over(t);
+  if (s == VS_OK) s = load_league(t, archive, path, &before, err);
   vs_actor_mean_restart(t);
   if (s == VS_OK && t->actor_mean && vs_archive_has(archive, actor_mean_section.name, &found))
     s = load_floats(archive, path, &actor_mean_section, t->actor_mean, t->league.size, err);
   // The file holds the matches of rank 0; other ranks start theirs anew, and their slots' episodes with them.
-  bool matches = !slim && vs_group_rank(t->group) == 0;
+  const char *differ = vs_train_matches_differ(&before, &t->def);
+  bool whole = vs_archive_has(archive, matches_section.name, &found), first = vs_group_rank(t->group) == 0,
+       matches = whole && !differ && first;
+  if (whole && differ && first && note)
+    snprintf(note + strlen(note), 256 - strlen(note), "%s'%s' is not as before: matches%s begin anew",
+             note[0] ? "; " : "", differ,
+             strcmp(before.opponent, t->def.opponent) ? " and the pool of earlier selves" : "");
   if (s == VS_OK && matches) s = load_matches(t, archive, path, err);
   if (s != VS_OK) return s;
   t->updates = numbers.updates, t->transitions = numbers.transitions, t->wall_s = numbers.wall_s;
@@ -261,7 +281,7 @@ vs_status vs_train_load(vs_train *train, const char *path, char *note, vs_error 
   vs_bytes archive = {0};
   char used[PATH_MAX];
   vs_status s = read_on_all(train, path, &archive, used, sizeof used, note, err);
-  if (s == VS_OK) s = load(train, &archive, used, err);
+  if (s == VS_OK) s = load(train, &archive, used, note, err);
   vs_bytes_free(&archive);
   return s;
 }

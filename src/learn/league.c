@@ -142,6 +142,11 @@ static void choose_opponent(vs_league *league, int index) {
   if (slot->self >= 0) league->self[slot->self].users++;
 }
 
+void vs_league_begin_episodes(vs_league *league) {
+  for (int i = 0; i < league->selves; i++) league->self[i].users = 0;
+  for (int i = 0; i < league->slots; i++) choose_opponent(league, i);
+}
+
 vs_status vs_league_init(vs_league *league, const vs_league_def *def, int slots, size_t size, const float *actor,
                          uint64_t seed, vs_error *err) {
   *league = (vs_league){.def = *def, .slots = slots, .size = size, .seed = seed, .frozen = -1};
@@ -158,7 +163,7 @@ vs_status vs_league_init(vs_league *league, const vs_league_def *def, int slots,
     vs_league_free(league);
     return vs_fail(err, VS_FAIL, "out of memory for a frozen opponent");
   }
-  for (int i = 0; i < slots; i++) choose_opponent(league, i);
+  vs_league_begin_episodes(league);
   return VS_OK;
 }
 

@@ -85,6 +85,7 @@ typedef struct vs_league {
 vs_status vs_league_init(vs_league *league, const vs_league_def *def, int slots, size_t size, const float *actor,
                          uint64_t seed, vs_error *err);
 void vs_league_free(vs_league *league);
+void vs_league_begin_episodes(vs_league *league); // of all slots; those that were going on are forgotten
 
 vs_opponent_kind vs_league_kind(const vs_league *league, int slot);
 // An episode of a slot ended with these goals of the learner's side and the other: credit it and choose who comes next.

@@ -86,14 +86,18 @@ static bool slot_ok(const vs_league *l, const vs_league_slot *slot, int index, i
          (meets ? slot->self >= 0 && slot->self < selves : slot->self == -1);
 }
 
-static bool members_ok(const vs_league *l, const league_state *s, const vs_league_slot *slot, const void *selves,
-                       size_t each) {
-  int members = 0;
-  for (int i = 0; i < l->slots; i++)
+static bool slots_ok(const vs_league *l, const league_state *s, const vs_league_slot *slot, int slots) {
+  for (int i = 0; i < slots; i++)
     if (!slot_ok(l, &slot[i], i, s->selves)) return false;
+  return slots == l->slots;
+}
+
+static bool members_ok(const vs_league *l, const league_state *s, const vs_league_slot *slot, int slots,
+                       const void *selves, size_t each) {
+  int members = 0;
   for (int i = 0; i < s->selves; i++) {
     self_state self = self_at(selves, each, i);
-    if (!self_ok(&self, s->next_id, slot, l->slots, i)) return false;
+    if (!self_ok(&self, s->next_id, slot, slots, i)) return false;
     if (i == s->frozen && self.id == 0) return false;
     members += self.in_pool;
   }
@@ -121,7 +125,7 @@ static vs_status take_selves(vs_league *l, const uint8_t *at, int count, vs_erro
   return VS_OK;
 }
 
-vs_status vs_league_load(vs_league *l, const vs_bytes *archive, const char *path, vs_error *err) {
+vs_status vs_league_load(vs_league *l, const vs_bytes *archive, const char *path, bool new_slots, vs_error *err) {
   vs_found found, slots, selves;
   league_state state;
   vs_status s = vs_archive_find(archive, path, &league_section, sizeof state, &found, err);
@@ -129,22 +133,25 @@ vs_status vs_league_load(vs_league *l, const vs_bytes *archive, const char *path
   memcpy(&state, found.data, sizeof state);
   if (!state_ok(l, &state)) return vs_fail(err, VS_FAIL, "%s: 'league' holds a number that no run has", path);
   size_t slots_size = (size_t)l->slots * sizeof *l->slot, each = sizeof(self_state) + l->size * sizeof(float);
-  s = vs_archive_find(archive, path, &slots_section, slots_size, &slots, err);
+  s = vs_archive_find(archive, path, &slots_section, new_slots ? 0 : slots_size, &slots, err);
   if (s == VS_OK) s = vs_archive_find(archive, path, &selves_section, (size_t)state.selves * each, &selves, err);
   if (s != VS_OK) return s;
-  vs_league_slot *slot = malloc(slots_size); // aligned, which the file's bytes need not be
+  vs_league_slot *slot = malloc(slots.size + 1); // aligned, which the file's bytes need not be; maybe of no slot
+  int count = (int)(slots.size / sizeof *slot);
   if (!slot) return vs_fail(err, VS_FAIL, "%s: out of memory", path);
-  memcpy(slot, slots.data, slots_size);
-  if (selves.size != (size_t)state.selves * each || !members_ok(l, &state, slot, selves.data, each))
+  memcpy(slot, slots.data, slots.size);
+  if (selves.size != (size_t)state.selves * each || !(new_slots || slots_ok(l, &state, slot, count)) ||
+      !members_ok(l, &state, slot, count, selves.data, each))
     s = vs_fail(err, VS_FAIL, "%s: 'slots' or 'selves' hold a number that no run has", path);
   else if (take_selves(l, selves.data, state.selves, err) != VS_OK)
     s = vs_fail_prefix(err, "%s", path);
   if (s == VS_OK) {
-    memcpy(l->slot, slot, slots_size);
+    if (!new_slots) memcpy(l->slot, slot, slots_size);
     l->frozen = state.frozen, l->next_id = state.next_id, l->replacements = state.replacements;
     l->window_at = state.window_at, l->window_filled = state.window_filled;
     memcpy(l->window, state.window, sizeof state.window);
     memcpy(l->record, state.record, sizeof state.record);
+    if (new_slots) vs_league_begin_episodes(l);
   }
   free(slot);
   return s;

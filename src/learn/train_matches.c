@@ -2,6 +2,7 @@
 
 #include <limits.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "vsss/paths.h"
@@ -100,4 +101,12 @@ vs_status vs_train_matches_open(const vs_train_def *def, const vs_league *league
   }
   *out = (vs_matches){m, learnt, reset, step, state_size, save, restore, free_matches};
   return VS_OK;
+}
+
+const char *vs_train_matches_differ(const vs_train_def *a, const vs_train_def *b) {
+  if (strcmp(a->drive, b->drive) != 0) return "drive";
+  if (strcmp(a->placement, b->placement) != 0) return "placement";
+  if (a->episode_s != b->episode_s) return "episode_s";
+  if (a->envs != b->envs) return "envs";
+  return strcmp(a->opponent, b->opponent) != 0 ? "opponent" : NULL;
 }

@@ -11,4 +11,7 @@
 vs_status vs_train_matches_open(const vs_train_def *def, const vs_league *league, int rank, const char *both,
                                 vs_matches *out, vs_error *err);
 
+// The first setting in which the matches of two runs differ, so that a snapshot of one is none of the other; NULL: none.
+const char *vs_train_matches_differ(const vs_train_def *a, const vs_train_def *b);
+
 #endif

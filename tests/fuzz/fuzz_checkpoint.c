@@ -28,11 +28,11 @@ int LLVMFuzzerInitialize(int *argc, char ***argv) {
   return 0;
 }
 
-static void go_on(const vs_bytes *archive) {
+static void go_on(const vs_bytes *archive, bool new_slots) {
   vs_error err = {0};
   vs_league *league = new_league();
   static const float actor[SIZE] = {4, 3, 2, 1};
-  if (vs_league_load(league, archive, "fuzz", &err) == VS_OK)
+  if (vs_league_load(league, archive, "fuzz", new_slots, &err) == VS_OK)
     for (int update = 1; update <= 20; update++) {
       for (int slot = 0; slot < SLOTS; slot++) vs_league_episode_over(league, slot, update % 3, 1);
       vs_league_window window = vs_league_results(league);
@@ -41,15 +41,20 @@ static void go_on(const vs_bytes *archive) {
   vs_league_free(league);
 }
 
+static void go_on_both(const vs_bytes *archive) {
+  go_on(archive, false);
+  go_on(archive, true);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   vs_error err = {0};
   vs_bytes archive = {0}, whole = {0};
-  if (vs_archive_read(fuzz_file(data, size), &archive, &err) == VS_OK) go_on(&archive);
+  if (vs_archive_read(fuzz_file(data, size), &archive, &err) == VS_OK) go_on_both(&archive);
   vs_bytes_free(&archive);
   uint64_t hash = vs_hash_bytes(VS_HASH_START, data, size);
   vs_bytes_append(&whole, data, size);
   vs_bytes_append(&whole, &hash, sizeof hash);
-  if (vs_archive_read(fuzz_file(whole.data, whole.size), &archive, &err) == VS_OK) go_on(&archive);
+  if (vs_archive_read(fuzz_file(whole.data, whole.size), &archive, &err) == VS_OK) go_on_both(&archive);
   vs_bytes_free(&archive);
   vs_bytes_free(&whole);
   return 0;

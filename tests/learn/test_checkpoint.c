@@ -340,6 +340,53 @@ static void a_slim_checkpoint_continues_the_networks_with_new_matches(void **sta
   vs_train_free(again);
 }
 
+// More matches than before, of another length: networks and earlier selves go on, the matches begin anew. Another mix of
+// opponents: the networks alone go on.
+static void a_run_goes_on_with_other_matches_and_says_so(void **state) {
+  (void)state;
+  const struct {
+    int more_envs;
+    double episode_s;
+    const char *opponent, *named;
+  } row[] = {{0, 20, NULL, "'episode_s'"}, {3, 0, NULL, "'envs'"}, {0, 0, "self=0.5,pool=0.5", "'opponent'"}};
+  vs_train_def def = tiny_def();
+  vs_train *train = open_tiny(&def);
+  updates(train, 7);
+  assert_ok(vs_train_save(train, file, err));
+  const vs_league *before = &train->league;
+  for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
+    char note[256];
+    vs_train_def other = def;
+    other.envs += row[k].more_envs;
+    if (row[k].episode_s > 0) other.episode_s = row[k].episode_s;
+    if (row[k].opponent) snprintf(other.opponent, sizeof other.opponent, "%s", row[k].opponent);
+    vs_train *again = open_tiny(&other);
+    assert_ok(vs_train_load(again, file, note, err));
+    assert_non_null(strstr(note, row[k].named));
+    assert_memory_equal(again->learner.parameters, train->learner.parameters, train->learner.net.size * sizeof(float));
+    const vs_league *now = &again->league;
+    int users = 0, meet = 0;
+    for (int i = 0; i < now->selves; i++) users += now->self[i].users;
+    for (int i = 0; i < now->slots; i++) meet += now->slot[i].self >= 0;
+    assert_int_equal(users, meet);
+    assert_int_equal(now->slots, other.envs);
+    if (row[k].opponent) {
+      vs_net_extract_actor(&train->learner.net, train->learner.parameters, &train->rollout.actor, train->actor);
+      for (int i = 0; i < now->selves; i++)
+        assert_memory_equal(now->self[i].parameters, train->actor, now->size * sizeof(float));
+    } else {
+      assert_int_equal(now->next_id, before->next_id);
+      for (int i = 0; i < before->selves; i++)
+        if (before->self[i].id)
+          assert_memory_equal(now->self[i].parameters, before->self[i].parameters, now->size * sizeof(float));
+    }
+    updates(again, 3);
+    assert_int_equal(again->updates, 10);
+    vs_train_free(again);
+  }
+  vs_train_free(train);
+}
+
 static void a_full_disk_leaves_the_old_checkpoint_and_names_the_file(void **state) {
   (void)state;
   vs_train_def def = tiny_def();
@@ -437,6 +484,7 @@ int main(void) {
       cmocka_unit_test(a_newer_checkpoint_is_refused_by_the_section_that_is),
       cmocka_unit_test(the_last_releases_checkpoint_loads_and_trains_on),
       cmocka_unit_test(a_slim_checkpoint_continues_the_networks_with_new_matches),
+      cmocka_unit_test(a_run_goes_on_with_other_matches_and_says_so),
       cmocka_unit_test(a_full_disk_leaves_the_old_checkpoint_and_names_the_file),
       cmocka_unit_test(a_run_killed_at_any_moment_resumes_exactly),
   };
