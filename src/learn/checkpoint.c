@@ -25,6 +25,8 @@ static const vs_section actor_mean_section = {"actor_mean", 1, 1}; // not in a s
 static const vs_section observation_section = {"observation", 1, 1};
 static const vs_section matches_section = {"matches", VS_VECENV_STATE, VS_VECENV_STATE};
 
+enum { NOTE_SIZE = 256 }; // of vs_train_load
+
 // The numbers of a run that are no arrays.
 typedef struct counters {
   int64_t updates, transitions, adam_steps, decision;
@@ -128,7 +130,7 @@ static vs_status read_either(const char *path, vs_bytes *archive, char *used, si
   if (vs_archive_read(path, archive, &first) == VS_OK) return VS_OK;
   snprintf(used, used_size, "%s.previous", path);
   if (vs_archive_read(used, archive, NULL) != VS_OK) return vs_fail(err, VS_FAIL, "%s", first.text);
-  if (note) snprintf(note, 256, "%.150s; continuing from %.80s", first.text, used);
+  if (note) snprintf(note, NOTE_SIZE, "%.150s; continuing from %.80s", first.text, used);
   return VS_OK;
 }
 
@@ -231,6 +233,13 @@ static vs_status load_league(vs_train *t, const vs_bytes *archive, const char *p
   return VS_OK;
 }
 
+// Adds to the note of vs_train_load that matches begin anew, as setting is another, and whether the pool does too.
+static void note_new_matches(char *note, const char *setting, bool pool) {
+  size_t length = strlen(note);
+  snprintf(note + length, NOTE_SIZE - length, "%s'%s' is not as before: matches%s begin anew", length ? "; " : "",
+           setting, pool ? " and the pool of earlier selves" : "");
+}
+
 static vs_status load(vs_train *t, const vs_bytes *archive, const char *path, char *note, vs_error *err) {
   vs_found found;
   counters numbers;
@@ -251,12 +260,9 @@ static vs_status load(vs_train *t, const vs_bytes *archive, const char *path, ch
     s = load_floats(archive, path, &actor_mean_section, t->actor_mean, t->league.size, err);
   // The file holds the matches of rank 0; other ranks start theirs anew, and their slots' episodes with them.
   const char *differ = vs_train_matches_differ(&before, &t->def);
-  bool whole = vs_archive_has(archive, matches_section.name, &found), first = vs_group_rank(t->group) == 0,
-       matches = whole && !differ && first;
-  if (whole && differ && first && note)
-    snprintf(note + strlen(note), 256 - strlen(note), "%s'%s' is not as before: matches%s begin anew",
-             note[0] ? "; " : "", differ,
-             strcmp(before.opponent, t->def.opponent) ? " and the pool of earlier selves" : "");
+  bool whole = vs_archive_has(archive, matches_section.name, &found), first = vs_group_rank(t->group) == 0;
+  bool matches = whole && first && !differ;
+  if (whole && first && differ && note) note_new_matches(note, differ, strcmp(before.opponent, t->def.opponent) != 0);
   if (s == VS_OK && matches) s = load_matches(t, archive, path, err);
   if (s != VS_OK) return s;
   t->updates = numbers.updates, t->transitions = numbers.transitions, t->wall_s = numbers.wall_s;

@@ -146,12 +146,14 @@ vs_status vs_league_load(vs_league *l, const vs_bytes *archive, const char *path
   else if (take_selves(l, selves.data, state.selves, err) != VS_OK)
     s = vs_fail_prefix(err, "%s", path);
   if (s == VS_OK) {
-    if (!new_slots) memcpy(l->slot, slot, slots_size);
     l->frozen = state.frozen, l->next_id = state.next_id, l->replacements = state.replacements;
     l->window_at = state.window_at, l->window_filled = state.window_filled;
     memcpy(l->window, state.window, sizeof state.window);
     memcpy(l->record, state.record, sizeof state.record);
-    if (new_slots) vs_league_begin_episodes(l);
+    if (new_slots)
+      vs_league_begin_episodes(l);
+    else
+      memcpy(l->slot, slot, slots_size);
   }
   free(slot);
   return s;
