@@ -35,6 +35,9 @@ typedef struct vs_train_def {
   double replace_score;
   bool score_window_zero_filled; // the paper's window of results: zeros at first, never cleared
   int pool_size, pool_every;
+  // Earlier selves drive at a gain drawn for each episode, the team's or each robot's own (high 0: at action_gain), and in
+  // this share of the episodes take the mean of what the policy draws from, as policy files do.
+  double opponent_gain_low, opponent_gain_high, opponent_mean;
   // Reward: a preset (dense, goals, paper) and changes, such as "dense,approach=0.3"; shifts linearly from the first to
   // the second between the two numbers of transitions.
   char reward[192], reward_end[192];

@@ -198,16 +198,38 @@ static uint8_t show(const vs_rollout *r, const float *observations, int row, flo
 static int wheel_of(uint8_t turn, int k) { return turn == MIRRORED || turn == REVERSED ? 1 - k : k; }
 static double way_of(uint8_t turn) { return turn & REVERSED ? -1.0 : 1.0; }
 
+// How a row drives: its gain, and whether it samples or takes the mean.
+typedef struct driving {
+  double gain;
+  bool mean;
+} driving;
+
+// Of a frozen self's row in the present episode of its match: every other team has one gain, the robots of the others
+// have each their own.
+static driving draw_driving(const vs_rollout *r, int row) {
+  const vs_opponent_style *style = &r->def.opponent;
+  int env = row / (VS_TEAMS * VS_TEAM_SIZE), robot = row % VS_TEAM_SIZE;
+  vs_rng rng =
+      vs_rng_make(vs_seed_mix(r->def.seed ^ UINT64_C(0x5354594c), (uint64_t)env), r->league->slot[env].episode);
+  driving d = {.gain = r->def.io.action_gain, .mean = vs_rng_uniform(&rng) < style->mean};
+  bool alike = vs_rng_below(&rng, 2) == 0;
+  double part = vs_rng_uniform(&rng);
+  for (int k = 0; k < robot && !alike; k++) part = vs_rng_uniform(&rng);
+  if (style->gain_high > 0.0) d.gain = style->gain_low + part * (style->gain_high - style->gain_low);
+  return d;
+}
+
 // Draws the action of one row: number `decision` of the row's own stream, whoever computes it. Of a frozen self
 // (learning false) nothing is kept.
 static void sample_row(vs_rollout *r, const float *raw, int row, uint8_t turn, size_t kept, bool learning) {
   vs_rng rng = vs_rng_make(vs_seed_mix(r->def.seed, (uint64_t)r->decision), (uint64_t)row);
+  driving drives = learning ? (driving){.gain = r->def.io.action_gain} : draw_driving(r, row);
   double log_p = 0.0;
   for (int k = 0; k < A; k++) {
     double alpha = 1.0 + vs_softplus(raw[k]), beta = 1.0 + vs_softplus(raw[A + k]);
-    double u = vs_beta_sample(alpha, beta, &rng);
+    double u = drives.mean ? alpha / (alpha + beta) : vs_beta_sample(alpha, beta, &rng);
     r->io.action[row * A + wheel_of(turn, k)] =
-        (float)(way_of(turn) * vs_clamp(r->def.io.action_gain * (2.0 * u - 1.0), -1.0, 1.0));
+        (float)(way_of(turn) * vs_clamp(drives.gain * (2.0 * u - 1.0), -1.0, 1.0));
     if (!learning) continue;
     float log_u = (float)log(u), log_1_u = (float)log1p(-u);
     r->log_u[kept * A + (size_t)k] = log_u;

@@ -25,11 +25,18 @@ typedef struct vs_matches {
   void (*free)(void *self);
 } vs_matches;
 
+// How earlier selves drive, drawn for each episode: strangers are slower, faster or bolder than the policy is.
+typedef struct vs_opponent_style {
+  double gain_low, gain_high; // in place of io.action_gain; high 0: io.action_gain
+  double mean;                // share of episodes in which they do not sample, but take the mean, as policy files do
+} vs_opponent_style;
+
 typedef struct vs_rollout_def {
   int envs, steps;
   double gamma, lambda;
   uint64_t seed;
   vs_policy_io io;
+  vs_opponent_style opponent;
 } vs_rollout_def;
 
 // Sums over a batch (all learning rows of all steps).

@@ -110,7 +110,13 @@ static vs_status make_league_and_rollout(vs_train *t, vs_error *err) {
   // Every rank plays its own matches.
   uint64_t seed = vs_seed_mix(t->def.seed, 1000 + (uint64_t)vs_group_rank(t->group));
   s = vs_league_init(&t->league, &league, t->def.envs, actor.size, t->actor, seed, err);
-  const vs_rollout_def def = {t->def.envs, t->def.steps, t->def.gamma, t->def.lambda, seed, training_io(&t->def)};
+  const vs_rollout_def def = {t->def.envs,
+                              t->def.steps,
+                              t->def.gamma,
+                              t->def.lambda,
+                              seed,
+                              training_io(&t->def),
+                              {t->def.opponent_gain_low, t->def.opponent_gain_high, t->def.opponent_mean}};
   if (s == VS_OK) s = vs_rollout_init(&t->rollout, &def, &t->learner, &t->scale, &t->league, err);
   return s == VS_OK ? vs_actor_mean_open(t, err) : s;
 }

@@ -82,6 +82,7 @@ static void without_levers(vs_train_def *def) {
   def->start_open = def->start_penalty = def->start_free_ball = def->start_from_m = 0.0;
   snprintf(def->learning_rate_decay, sizeof def->learning_rate_decay, "linear");
   def->learning_rate_hold_m = 0.0;
+  def->opponent_gain_low = def->opponent_gain_high = def->opponent_mean = 0.0;
   def->augment = 0;
   def->reversible = false;
   def->canonical = false;
@@ -155,6 +156,9 @@ void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
       SWITCH(score_window_zero_filled, "frozen: the paper's window of 100 results, zeros at first and never cleared"),
       WHOLE(pool_size, 1, 1000, "pool: earlier selves kept"),
       WHOLE(pool_every, 1, 1000000, "pool: updates between two additions"),
+      REAL(opponent_gain_low, 0, 4, "earlier selves drive at a gain drawn for each episode, from"),
+      REAL(opponent_gain_high, 0, 4, "... to; 0: at action_gain"),
+      REAL(opponent_mean, 0, 1, "share of episodes in which they take the mean of what they would draw from"),
       TEXT(reward, "paper, dense or goals, then term=weight"),
       TEXT(reward_end, "what the reward becomes"),
       REAL(anneal_from_m, 0, 1e6, "millions of transitions where the change begins"),
@@ -309,6 +313,9 @@ vs_status vs_train_def_check(const vs_train_def *def, vs_error *err) {
     return vs_fail(err, VS_USAGE, "canonical and augment exclude each other: set canonical = false or augment = 0");
   if (def->canonical && def->export_average)
     return vs_fail(err, VS_USAGE, "canonical and export_average exclude each other: set one of them to false");
+  if (def->opponent_gain_high < def->opponent_gain_low)
+    return vs_fail(err, VS_USAGE, "opponent_gain_high = %g: must not be below opponent_gain_low = %g",
+                   def->opponent_gain_high, def->opponent_gain_low);
   if (def->still_high_s < def->still_low_s)
     return vs_fail(err, VS_USAGE, "still_high_s = %g: must not be below still_low_s = %g", def->still_high_s,
                    def->still_low_s);

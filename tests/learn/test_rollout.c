@@ -133,6 +133,85 @@ static void a_robot_that_faces_back_is_driven_by_its_other_end(void **state) {
   vs_train_free(t);
 }
 
+// The commands that all rows but the learner's get at decision `at` of their present episodes, into out [24][2].
+static void opponents_act(vs_train *t, long long at, float (*out)[2]) {
+  vs_rollout *r = &t->rollout;
+  r->decision = at;
+  vs_rollout_begin(r);
+  vs_rollout_act(r, 0, t->learner.parameters);
+  for (int row = 0; row < 4 * 6; row++) memcpy(out[row], r->io.action + 2 * row, sizeof out[row]);
+  for (int i = 0; i < r->rows; i++) memset(out[r->row[i]], 0, sizeof out[0]);
+}
+
+static bool learns(const vs_rollout *r, int row) {
+  for (int i = 0; i < r->rows; i++)
+    if (r->row[i] == row) return true;
+  return false;
+}
+
+// Earlier selves at gains from 0.25 to 0.75, at the mean of what they draw from: each robot's command is its gain times
+// that of a gain of 1, through the whole episode; one gain a team in some matches, one a robot in the others; other
+// gains in other episodes.
+static void opponents_drive_at_gains_drawn_for_each_episode(void **state) {
+  (void)state;
+  enum { EPISODES = 40, ROWS = 4 * 6 };
+  vs_train *t = open_tiny("frozen", 7);
+  vs_rollout *r = &t->rollout;
+  assert_ok(t->matches.reset(t->matches.self, &r->io, err));
+  float plain[ROWS][2], before[ROWS][2], now[ROWS][2];
+  int alike = 0, apart = 0, row_count = 0;
+  double low = 9, high = 0, sum = 0;
+  r->def.opponent = (vs_opponent_style){.mean = 1.0};
+  opponents_act(t, 0, plain);
+  for (int episode = 0; episode < EPISODES; episode++) {
+    r->def.opponent = (vs_opponent_style){.gain_low = 0.25, .gain_high = 0.75, .mean = 1.0};
+    opponents_act(t, 5, before);
+    opponents_act(t, 6, now);
+    assert_memory_equal(before, now, sizeof now);
+    for (int env = 0; env < 4; env++) {
+      double gain[3];
+      int first = env * 6 + (learns(r, env * 6) ? 3 : 0);
+      for (int k = 0; k < 3; k++) {
+        gain[k] = now[first + k][0] / plain[first + k][0];
+        assert_near(now[first + k][1], gain[k] * plain[first + k][1], 1e-6);
+        low = fmin(low, gain[k]), high = fmax(high, gain[k]), sum += gain[k], row_count++;
+      }
+      bool same = fabs(gain[1] - gain[0]) < 1e-4 && fabs(gain[2] - gain[0]) < 1e-4;
+      *(same ? &alike : &apart) += 1;
+      vs_league_episode_over(t->rollout.league, env, 1, 0);
+    }
+  }
+  assert_in_range(alike, EPISODES * 4 / 3, EPISODES * 4 * 2 / 3);
+  assert_int_equal(alike + apart, EPISODES * 4);
+  assert_true(low >= 0.2499 && low < 0.3 && high > 0.7 && high <= 0.7501);
+  assert_near(sum / row_count, 0.5, 0.05);
+  vs_train_free(t);
+}
+
+// Where the mean has a share of a half, opponents sample in about half of the episodes; the learner always does.
+static void opponents_take_the_mean_in_their_share_of_episodes(void **state) {
+  (void)state;
+  enum { EPISODES = 40, ROWS = 4 * 6 };
+  vs_train *t = open_tiny("frozen", 7);
+  vs_rollout *r = &t->rollout;
+  assert_ok(t->matches.reset(t->matches.self, &r->io, err));
+  r->def.opponent = (vs_opponent_style){.mean = 0.5};
+  float a[ROWS][2], b[ROWS][2];
+  int same = 0;
+  for (int episode = 0; episode < EPISODES; episode++) {
+    opponents_act(t, 5, a);
+    float learner = r->io.action[2 * r->row[0]];
+    opponents_act(t, 6, b);
+    assert_true(learner != r->io.action[2 * r->row[0]]);
+    for (int env = 0; env < 4; env++) {
+      same += !memcmp(a[env * 6], b[env * 6], 6 * sizeof a[0]);
+      vs_league_episode_over(t->rollout.league, env, 1, 0);
+    }
+  }
+  assert_in_range(same, EPISODES * 4 / 3, EPISODES * 4 * 2 / 3);
+  vs_train_free(t);
+}
+
 // Each row draws from its own stream: an action depends on seed, decision and row, not on who else plays.
 static void the_present_policy_plays_the_same_whatever_the_opponents(void **state) {
   (void)state;
@@ -154,6 +233,8 @@ int main(void) {
       cmocka_unit_test(a_mirrored_observation_drives_mirrored_wheels),
       cmocka_unit_test(a_robot_that_faces_back_is_driven_by_its_other_end),
       cmocka_unit_test(augmented_rows_see_versions_that_change_now_and_then),
+      cmocka_unit_test(opponents_drive_at_gains_drawn_for_each_episode),
+      cmocka_unit_test(opponents_take_the_mean_in_their_share_of_episodes),
       cmocka_unit_test(the_present_policy_plays_the_same_whatever_the_opponents),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -124,6 +124,35 @@ static void every_preset_passes_its_own_check(void **state) {
   }
 }
 
+static void settings_that_exclude_each_other_are_refused_by_name(void **state) {
+  (void)state;
+  static const struct {
+    const char *set[2], *why;
+  } wrong[] = {
+      {{"still_low_s=5", "still_high_s=4"}, "still_high_s = 4: must not be below still_low_s = 5"},
+      {{"start_open=0.6", "start_penalty=0.5"}, "start_open + start_penalty + start_free_ball = 1.2: at most 1"},
+      {{"anneal_from_m=9", "anneal_to_m=8"}, "anneal_to_m = 8: must not be below anneal_from_m = 9"},
+      {{"opponent_gain_low=1.5", "opponent_gain_high=1"},
+       "opponent_gain_high = 1: must not be below opponent_gain_low = 1.5"},
+      {{"opponent_gain_low=1.5", "envs=96"}, "opponent_gain_high = 0: must not be below opponent_gain_low = 1.5"},
+      {{"canonical=true", "augment=5"},
+       "canonical and augment exclude each other: set canonical = false or augment = 0"},
+      {{"canonical=true", "export_average=true"},
+       "canonical and export_average exclude each other: set one of them to false"},
+      {{"precision=bf16", "learner=torch"}, "precision = bf16: is for learner = own; torch computes in fp32"},
+      {{"envs=1", "steps=10"}, "minibatch = 1024: a batch of 1 matches x 10 steps has 30 rows with one side learning"},
+  };
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    vs_train_def def = vs_train_def_default();
+    vs_config_key keys[VS_TRAIN_KEYS_MAX];
+    vs_error err = {0};
+    vs_train_schema(&def, keys);
+    for (int k = 0; k < 2; k++) assert_int_equal(vs_config_set(wrong[i].set[k], keys, &err), VS_OK);
+    assert_int_equal(vs_train_def_check(&def, &err), VS_USAGE);
+    assert_string_equal(err.text, wrong[i].why);
+  }
+}
+
 static void a_reward_is_a_preset_and_changes(void **state) {
   (void)state;
   vs_reward_weights weights, paper = vs_reward_paper();
@@ -151,10 +180,15 @@ static void the_schedule_is_linear_between_its_ends(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_paper_preset_is_table_2),          cmocka_unit_test(settings_read_back_as_they_were_written),
-      cmocka_unit_test(the_learning_rate_falls_as_it_is_set), cmocka_unit_test(runs_of_before_go_on_as_they_were),
-      cmocka_unit_test(names_of_before_are_still_read),       cmocka_unit_test(every_preset_passes_its_own_check),
-      cmocka_unit_test(a_reward_is_a_preset_and_changes),     cmocka_unit_test(the_schedule_is_linear_between_its_ends),
+      cmocka_unit_test(the_paper_preset_is_table_2),
+      cmocka_unit_test(settings_read_back_as_they_were_written),
+      cmocka_unit_test(the_learning_rate_falls_as_it_is_set),
+      cmocka_unit_test(runs_of_before_go_on_as_they_were),
+      cmocka_unit_test(names_of_before_are_still_read),
+      cmocka_unit_test(every_preset_passes_its_own_check),
+      cmocka_unit_test(settings_that_exclude_each_other_are_refused_by_name),
+      cmocka_unit_test(a_reward_is_a_preset_and_changes),
+      cmocka_unit_test(the_schedule_is_linear_between_its_ends),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
