@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "league.h"
+#include "base/word.h"
 #include "vsss/config.h"
 
 enum { OWN_KEYS = 18, CLUB_KEYS = 3 };
@@ -30,11 +31,9 @@ static vs_status check(const char *path, league_file *f, vs_error *err) {
 }
 
 static vs_status check_format(const char *path, const char *format, league_file *f, vs_error *err) {
-  static const char *const names[] = {"round-robin", "knockout", "groups"};
-  int k = 0;
-  while (k < 3 && strcmp(format, names[k]) != 0) k++;
-  if (k == 3)
-    return vs_fail(err, VS_USAGE, "%s: [league] format = %s: known are round-robin, knockout and groups", path, format);
+  static const char *const names[] = {"round-robin", "knockout", "groups", NULL};
+  int k;
+  if (vs_word_parse("format", format, names, &k, err) != VS_OK) return vs_fail_prefix(err, "%s: [league]", path);
   f->format = (league_format)k;
   if (f->format != LEAGUE_IN_GROUPS) {
     f->groups = f->advance = 1;

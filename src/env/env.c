@@ -1,4 +1,5 @@
 // One match, frame by frame: measure, decide, command, simulate, judge, place.
+#include "base/word.h"
 #include "vsss/env.h"
 
 #include <stdlib.h>
@@ -38,13 +39,11 @@ struct vs_env {
 };
 
 vs_status vs_predicts_parse(const char *text, vs_predicts *out, vs_error *err) {
-  static const char *const names[] = {"learned", "none", "all"};
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-    if (!strcmp(text, names[i])) {
-      *out = (vs_predicts)i;
-      return VS_OK;
-    }
-  return vs_fail(err, VS_USAGE, "predicts = %s: expected learned, none or all", text);
+  static const char *const names[] = {"learned", "none", "all", NULL};
+  int predicts;
+  vs_status s = vs_word_parse("predicts", text, names, &predicts, err);
+  if (s == VS_OK) *out = (vs_predicts)predicts;
+  return s;
 }
 
 vs_env_def vs_env_def_default(const vs_model *model) {

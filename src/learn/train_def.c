@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/word.h"
 #include "base/config_rows.h"
 #include "league.h"
 #include "net.h"
@@ -123,13 +124,11 @@ static vs_train_def paper(void) {
 }
 
 vs_status vs_train_def_preset(const char *name, vs_train_def *out, vs_error *err) {
-  if (!strcmp(name, "default"))
-    *out = vs_train_def_default();
-  else if (!strcmp(name, "paper"))
-    *out = paper();
-  else
-    return vs_fail(err, VS_USAGE, "unknown preset '%s'; there are: default, paper", name);
-  return VS_OK;
+  static const char *const names[] = {"default", "paper", NULL};
+  int preset;
+  vs_status s = vs_word_parse("preset", name, names, &preset, err);
+  if (s == VS_OK) *out = preset ? paper() : vs_train_def_default();
+  return s;
 }
 
 void vs_train_schema(vs_train_def *d, vs_config_key keys[VS_TRAIN_KEYS_MAX]) {
@@ -268,13 +267,11 @@ vs_status vs_train_hidden(const vs_train_def *def, vs_net_shape *shape, vs_error
 
 vs_status vs_train_precision(const vs_train_def *def, vs_precision *out, vs_error *err) {
   static const char *const names[] = {
-      [VS_PRECISION_FP32] = "fp32", [VS_PRECISION_BF16] = "bf16", [VS_PRECISION_AUTO] = "auto"};
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-    if (!strcmp(def->precision, names[i])) {
-      *out = (vs_precision)i;
-      return VS_OK;
-    }
-  return vs_fail(err, VS_USAGE, "precision = %s: expected fp32, bf16 or auto", def->precision);
+      [VS_PRECISION_FP32] = "fp32", [VS_PRECISION_BF16] = "bf16", [VS_PRECISION_AUTO] = "auto", NULL};
+  int precision;
+  vs_status s = vs_word_parse("precision", def->precision, names, &precision, err);
+  if (s == VS_OK) *out = (vs_precision)precision;
+  return s;
 }
 
 double vs_train_learning_rate(const vs_train_def *def, double transitions) {
@@ -300,12 +297,12 @@ vs_status vs_train_def_check(const vs_train_def *def, vs_error *err) {
   if (s == VS_OK) s = vs_reward_mix_parse(def->reward, &weights, err);
   if (s == VS_OK) s = vs_reward_mix_parse(def->reward_end, &weights, err);
   if (s != VS_OK) return s;
-  if (strcmp(def->learning_rate_decay, "linear") != 0 && strcmp(def->learning_rate_decay, "exponential") != 0)
-    return vs_fail(err, VS_USAGE, "learning_rate_decay = %s: expected linear or exponential", def->learning_rate_decay);
-  if (strcmp(def->learner, "own") != 0 && strcmp(def->learner, "torch") != 0)
-    return vs_fail(err, VS_USAGE, "learner = %s: expected own or torch", def->learner);
+  static const char *const decays[] = {"linear", "exponential", NULL}, *const learners[] = {"own", "torch", NULL};
+  int which;
   vs_precision precision = VS_PRECISION_FP32;
-  s = vs_train_precision(def, &precision, err);
+  s = vs_word_parse("learning_rate_decay", def->learning_rate_decay, decays, &which, err);
+  if (s == VS_OK) s = vs_word_parse("learner", def->learner, learners, &which, err);
+  if (s == VS_OK) s = vs_train_precision(def, &precision, err);
   if (s != VS_OK) return s;
   if (precision == VS_PRECISION_BF16 && !strcmp(def->learner, "torch"))
     return vs_fail(err, VS_USAGE, "precision = bf16: is for learner = own; torch computes in fp32");

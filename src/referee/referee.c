@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "referee_internal.h"
+#include "base/word.h"
 #include "vsss/check.h"
 #include "vsss/field.h"
 #include "vsss/geom.h"
@@ -260,23 +261,18 @@ vs_event vs_referee_step(vs_referee *referee, const vs_world *world, double dt_s
   return event;
 }
 
-static const char *const rules_names[] = {"paper", "league", "serie-a-2023", "larc-2026"};
-
 vs_status vs_rules_parse(const char *name, vs_rules *out, vs_error *err) {
-  for (int k = VS_RULES_PAPER; k <= VS_RULES_LARC_2026; k++) {
-    if (strcmp(name, rules_names[k]) != 0) continue;
-    *out = (vs_rules)k;
-    return VS_OK;
-  }
-  return vs_fail(err, VS_USAGE, "rules '%.80s': known are paper, league, serie-a-2023 and larc-2026", name);
+  static const char *const names[] = {"paper", "league", "serie-a-2023", "larc-2026", NULL};
+  int rules;
+  vs_status s = vs_word_parse("rules", name, names, &rules, err);
+  if (s == VS_OK) *out = (vs_rules)rules;
+  return s;
 }
 
 vs_status vs_placement_parse(const char *name, vs_placement_mode *out, vs_error *err) {
-  static const char *const names[] = {"paper", "random", "mixed"};
-  for (int k = VS_PLACEMENT_PAPER; k <= VS_PLACEMENT_MIXED; k++) {
-    if (strcmp(name, names[k]) != 0) continue;
-    *out = (vs_placement_mode)k;
-    return VS_OK;
-  }
-  return vs_fail(err, VS_USAGE, "placement '%.80s': known are paper, random and mixed", name);
+  static const char *const names[] = {"paper", "random", "mixed", NULL};
+  int mode;
+  vs_status s = vs_word_parse("placement", name, names, &mode, err);
+  if (s == VS_OK) *out = (vs_placement_mode)mode;
+  return s;
 }

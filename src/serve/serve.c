@@ -1,4 +1,5 @@
 // The shell around a hosted match: sockets, whose turn it is, what is worth telling.
+#include "base/word.h"
 #include "vsss/serve.h"
 
 #include <math.h>
@@ -43,16 +44,16 @@ struct vs_serve {
   uint8_t bytes[VS_LEAGUE_RECEIVE_MAX];
 };
 
+static const char *const dialect_names[] = {"firasim", "travesim", NULL};
+
 vs_status vs_dialect_parse(const char *name, vs_dialect *out, vs_error *err) {
-  for (int d = VS_DIALECT_FIRASIM; d <= VS_DIALECT_TRAVESIM; d++) {
-    if (strcmp(name, vs_dialect_name((vs_dialect)d)) != 0) continue;
-    *out = (vs_dialect)d;
-    return VS_OK;
-  }
-  return vs_fail(err, VS_USAGE, "dialect '%.40s': known are firasim and travesim", name);
+  int dialect;
+  vs_status s = vs_word_parse("dialect", name, dialect_names, &dialect, err);
+  if (s == VS_OK) *out = (vs_dialect)dialect;
+  return s;
 }
 
-const char *vs_dialect_name(vs_dialect dialect) { return dialect == VS_DIALECT_TRAVESIM ? "travesim" : "firasim"; }
+const char *vs_dialect_name(vs_dialect dialect) { return dialect_names[dialect]; }
 int vs_dialect_hz(vs_dialect dialect) { return dialect == VS_DIALECT_TRAVESIM ? 100 : 60; }
 
 vs_serve_def vs_serve_def_default(void) {

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "mujoco_call.h"
+#include "base/word.h"
 #include "vsss/field.h"
 #include "vsss/paths.h"
 
@@ -17,15 +18,15 @@
 
 const char *vs_mujoco_version(void) { return mj_versionString(); }
 
-const char *vs_drive_name(vs_drive drive) { return drive == VS_DRIVE_PLANAR ? "planar" : "contact"; }
+static const char *const drive_names[] = {"contact", "planar", NULL};
+
+const char *vs_drive_name(vs_drive drive) { return drive_names[drive]; }
 
 vs_status vs_drive_parse(const char *name, vs_drive *out, vs_error *err) {
-  for (vs_drive drive = VS_DRIVE_CONTACT; drive <= VS_DRIVE_PLANAR; drive++) {
-    if (strcmp(name, vs_drive_name(drive)) != 0) continue;
-    *out = drive;
-    return VS_OK;
-  }
-  return vs_fail(err, VS_USAGE, "unknown drive '%s': use contact or planar", name);
+  int drive;
+  vs_status s = vs_word_parse("drive", name, drive_names, &drive, err);
+  if (s == VS_OK) *out = (vs_drive)drive;
+  return s;
 }
 
 vs_model_def vs_model_def_default(vs_drive drive) { return (vs_model_def){.drive = drive}; }

@@ -1,3 +1,4 @@
+#include "base/word.h"
 #include "vsss/division.h"
 
 #include <string.h>
@@ -45,12 +46,11 @@ const vs_pitch *vs_pitch_of(vs_division division) {
 }
 
 vs_status vs_division_parse(const char *name, vs_division *out, vs_error *err) {
-  for (int d = VS_3V3; d < VS_DIVISIONS; d++) {
-    if (strcmp(name, fields[d].name) != 0) continue;
-    *out = (vs_division)d;
-    return VS_OK;
-  }
-  return vs_fail(err, VS_USAGE, "division '%.40s': known are 3v3 and 5v5", name);
+  const char *const names[] = {fields[VS_3V3].name, fields[VS_5V5].name, NULL};
+  int division;
+  vs_status s = vs_word_parse("division", name, names, &division, err);
+  if (s == VS_OK) *out = (vs_division)division;
+  return s;
 }
 
 vs_status vs_division_wants_3v3(vs_division division, const char *what, vs_error *err) {

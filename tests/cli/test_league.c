@@ -207,7 +207,7 @@ static void what_is_wrong_with_a_file_is_named(void **state) {
              {"[club1]\nname = A,B\nplayer = zero:\n[club2]\nname = C\nplayer = emc:\n", "make a name"},
              {"[club1]\nname = A\nplayer = nobody:\n[club2]\nname = C\nplayer = emc:\n", "A: "},
              {"[league]\nformat = cup\n[club1]\nname = A\nplayer = zero:\n[club2]\nname = B\nplayer = zero:\n",
-              "format = cup: known are round-robin, knockout and groups"},
+              "[league]: format 'cup': expected round-robin, knockout or groups"},
              {"[league]\nformat = groups\n[club1]\nname = A\nplayer = zero:\n[club2]\nname = B\nplayer = zero:\n",
               "groups = 2: 2 clubs are too few"},
              {"[league]\ndivision = 4v4\n[club1]\nname = A\nplayer = zero:\n[club2]\nname = B\nplayer = zero:\n",

@@ -228,7 +228,7 @@ static void five_against_five_is_played(void **state) {
   assert_int_equal(strncmp(value_of(run.out, "hash"), value_of(other.out, "hash"), 18), 0);
   assert_refused("sim --division 5v5 --blue onnx: --seconds 1", 2, "three robots, not 5v5: use --division 3v3");
   assert_refused("eval --division 5v5 --against emc: --matches 1 --seconds 1", 2, "not 5v5");
-  assert_refused("sim --division 4v4", 2, "known are 3v3 and 5v5");
+  assert_refused("sim --division 4v4", 2, "division '4v4': expected 3v3 or 5v5");
 }
 
 static void five_against_five_is_recorded_and_read_again(void **state) {

@@ -245,7 +245,7 @@ static void a_damaged_checkpoint_is_named_and_the_one_before_continues(void **st
 
 static void wrong_settings_are_refused_with_the_allowed_range(void **state) {
   (void)state;
-  assert_refused("train --preset fast", 2, "there are: default, paper");
+  assert_refused("train --preset fast", 2, "expected default or paper");
   assert_refused("train --set gamma=1.5", 2, "allowed are 0.5 to 0.99999");
   assert_refused("train --set clip=0", 2, "allowed are 0.01 to 1");
   assert_refused("train --set epochs=0", 2, "allowed are 1 to 100");

@@ -78,7 +78,7 @@ static void the_learning_rate_falls_as_it_is_set(void **state) {
   snprintf(def.learning_rate_decay, sizeof def.learning_rate_decay, "cosine");
   vs_error err = {0};
   assert_int_equal(vs_train_def_check(&def, &err), VS_USAGE);
-  assert_string_equal(err.text, "learning_rate_decay = cosine: expected linear or exponential");
+  assert_string_equal(err.text, "learning_rate_decay 'cosine': expected linear or exponential");
 }
 
 // Checkpoints of before the settings fell linearly and saw robots as they headed.

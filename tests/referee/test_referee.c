@@ -156,13 +156,13 @@ static void names_are_parsed_and_unknown_ones_refused(void **state) {
   assert_ok(vs_rules_parse("paper", &rules, err));
   assert_int_equal(rules, VS_RULES_PAPER);
   assert_int_equal(vs_rules_parse("fifa", &rules, &err), VS_USAGE);
-  assert_string_equal(err.text, "rules 'fifa': known are paper, league, serie-a-2023 and larc-2026");
+  assert_string_equal(err.text, "rules 'fifa': expected paper, league, serie-a-2023 or larc-2026");
   assert_ok(vs_placement_parse("random", &mode, err));
   assert_int_equal(mode, VS_PLACEMENT_RANDOM);
   assert_ok(vs_placement_parse("mixed", &mode, err));
   assert_int_equal(mode, VS_PLACEMENT_MIXED);
   assert_int_equal(vs_placement_parse("", &mode, &err), VS_USAGE);
-  assert_string_equal(err.text, "placement '': known are paper, random and mixed");
+  assert_string_equal(err.text, "placement '': expected paper, random or mixed");
 }
 
 int main(void) {

@@ -34,7 +34,7 @@ static void divisions_are_found_by_name_and_others_refused(void **state) {
   assert_ok(vs_division_parse("5v5", &division, err));
   assert_int_equal(division, VS_5V5);
   assert_int_equal(vs_division_parse("4v4", &division, &why), VS_USAGE);
-  assert_non_null(strstr(why.text, "3v3 and 5v5"));
+  assert_non_null(strstr(why.text, "expected 3v3 or 5v5"));
   assert_ok(vs_division_wants_3v3(VS_3V3, "x", err));
   assert_int_equal(vs_division_wants_3v3(VS_5V5, "the learned policy", &why), VS_USAGE);
   assert_non_null(strstr(why.text, "the learned policy plays 3v3 only"));
