@@ -223,7 +223,8 @@ static driving draw_driving(const vs_rollout *r, int row) {
 // (learning false) nothing is kept.
 static void sample_row(vs_rollout *r, const float *raw, int row, uint8_t turn, size_t kept, bool learning) {
   vs_rng rng = vs_rng_make(vs_seed_mix(r->def.seed, (uint64_t)r->decision), (uint64_t)row);
-  driving drives = learning ? (driving){.gain = r->def.io.action_gain} : draw_driving(r, row);
+  driving drives = {.gain = r->def.io.action_gain};
+  if (!learning) drives = draw_driving(r, row);
   double log_p = 0.0;
   for (int k = 0; k < A; k++) {
     double alpha = 1.0 + vs_softplus(raw[k]), beta = 1.0 + vs_softplus(raw[A + k]);
