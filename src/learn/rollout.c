@@ -204,8 +204,8 @@ typedef struct driving {
   bool mean;
 } driving;
 
-// Of a frozen self's row in the present episode of its match: every other team has one gain, the robots of the others
-// have each their own.
+// Of a frozen self's row in the present episode of its match: in half of the episodes its team has one gain, in the others
+// each robot its own.
 static driving draw_driving(const vs_rollout *r, int row) {
   const vs_opponent_style *style = &r->def.opponent;
   int env = row / (VS_TEAMS * VS_TEAM_SIZE), robot = row % VS_TEAM_SIZE;
