@@ -143,12 +143,6 @@ static void opponents_act(vs_train *t, long long at, float (*out)[2]) {
   for (int i = 0; i < r->rows; i++) memset(out[r->row[i]], 0, sizeof out[0]);
 }
 
-static bool learns(const vs_rollout *r, int row) {
-  for (int i = 0; i < r->rows; i++)
-    if (r->row[i] == row) return true;
-  return false;
-}
-
 // Earlier selves at gains from 0.25 to 0.75, at the mean of what they draw from: each robot's command is its gain times
 // that of a gain of 1, through the whole episode; one gain a team in some matches, one a robot in the others; other
 // gains in other episodes.
@@ -170,7 +164,7 @@ static void opponents_drive_at_gains_drawn_for_each_episode(void **state) {
     assert_memory_equal(before, now, sizeof now);
     for (int env = 0; env < 4; env++) {
       double gain[3];
-      int first = env * 6 + (learns(r, env * 6) ? 3 : 0);
+      int first = env * 6 + (r->league->slot[env].learner == VS_BLUE ? 3 : 0);
       for (int k = 0; k < 3; k++) {
         gain[k] = now[first + k][0] / plain[first + k][0];
         assert_near(now[first + k][1], gain[k] * plain[first + k][1], 1e-6);
@@ -178,7 +172,7 @@ static void opponents_drive_at_gains_drawn_for_each_episode(void **state) {
       }
       bool same = fabs(gain[1] - gain[0]) < 1e-4 && fabs(gain[2] - gain[0]) < 1e-4;
       *(same ? &alike : &apart) += 1;
-      vs_league_episode_over(t->rollout.league, env, 1, 0);
+      vs_league_episode_over(r->league, env, 1, 0);
     }
   }
   assert_in_range(alike, EPISODES * 4 / 3, EPISODES * 4 * 2 / 3);
@@ -205,7 +199,7 @@ static void opponents_take_the_mean_in_their_share_of_episodes(void **state) {
     assert_true(learner != r->io.action[2 * r->row[0]]);
     for (int env = 0; env < 4; env++) {
       same += !memcmp(a[env * 6], b[env * 6], 6 * sizeof a[0]);
-      vs_league_episode_over(t->rollout.league, env, 1, 0);
+      vs_league_episode_over(r->league, env, 1, 0);
     }
   }
   assert_in_range(same, EPISODES * 4 / 3, EPISODES * 4 * 2 / 3);
