@@ -2,8 +2,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "league.h"
 #include "base/word.h"
+#include "league.h"
 #include "vsss/config.h"
 
 enum { OWN_KEYS = 18, CLUB_KEYS = 3 };

@@ -1,10 +1,10 @@
 // One match, frame by frame: measure, decide, command, simulate, judge, place.
-#include "base/word.h"
 #include "vsss/env.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/word.h"
 #include "vsss/check.h"
 
 #define FRAMES_PER_DECISION (VS_CAMERA_HZ / VS_DECISION_HZ)

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/word.h"
 #include "base/config_rows.h"
+#include "base/word.h"
 #include "league.h"
 #include "net.h"
 #include "reward_mix.h"

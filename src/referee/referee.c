@@ -2,8 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "referee_internal.h"
 #include "base/word.h"
+#include "referee_internal.h"
 #include "vsss/check.h"
 #include "vsss/field.h"
 #include "vsss/geom.h"

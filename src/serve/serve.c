@@ -1,5 +1,4 @@
 // The shell around a hosted match: sockets, whose turn it is, what is worth telling.
-#include "base/word.h"
 #include "vsss/serve.h"
 
 #include <math.h>
@@ -7,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/word.h"
 #include "outbox.h"
 #include "vsss/clock.h"
 #include "vsss/field.h"

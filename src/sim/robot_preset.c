@@ -1,7 +1,8 @@
 #include "vsss/robot_preset.h"
 
-#include <string.h>
+#include <stddef.h>
 
+#include "base/word.h"
 #include "drive.h"
 #include "vsss/field.h"
 
@@ -17,12 +18,13 @@ static const vs_robot_preset presets[] = {
 };
 
 vs_status vs_robot_preset_find(const char *name, const vs_robot_preset **out, vs_error *err) {
-  for (size_t i = 0; i < sizeof presets / sizeof *presets; i++) {
-    if (strcmp(name, presets[i].name) != 0) continue;
-    *out = &presets[i];
-    return VS_OK;
-  }
-  return vs_fail(err, VS_USAGE, "robot '%.40s': known are paper, firasim and travesim", name);
+  enum { PRESETS = sizeof presets / sizeof *presets };
+  const char *names[PRESETS + 1] = {NULL};
+  for (int i = 0; i < PRESETS; i++) names[i] = presets[i].name;
+  int place;
+  vs_status s = vs_word_parse("robot", name, names, &place, err);
+  if (s == VS_OK) *out = &presets[place];
+  return s;
 }
 
 vs_sim_params vs_robot_preset_params(const vs_robot_preset *preset) {

@@ -5,10 +5,9 @@
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "mujoco_call.h"
 #include "base/word.h"
+#include "mujoco_call.h"
 #include "vsss/field.h"
 #include "vsss/paths.h"
 

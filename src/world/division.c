@@ -1,8 +1,8 @@
-#include "base/word.h"
 #include "vsss/division.h"
 
-#include <string.h>
+#include <stddef.h>
 
+#include "base/word.h"
 #include "vsss/field.h"
 #include "vsss/world.h"
 
