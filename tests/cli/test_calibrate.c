@@ -1,4 +1,4 @@
-// src/cli/cmd_calibrate.c and src/vision/tag_sheet.c, through the real binary
+// src/cli/cmd_calibrate.c, calibrate.c, calibrate_check.c, calibrate_colours.c and src/vision/tag_sheet.c, through the real binary
 #include <sys/stat.h>
 #include <unistd.h>
 
