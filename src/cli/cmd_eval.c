@@ -1,41 +1,11 @@
 // vsss eval: many matches of one player against others, or of all against all, with intervals and ratings.
 #include <errno.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "commands.h"
-#include "json_text.h"
-#include "report.h"
+#include "eval.h"
 #include "vsss/clock.h"
-
-enum { MAX_PLAYERS = 32 };
-
-// One row of the table: blue against yellow.
-typedef struct pairing {
-  const char *uri[VS_TEAMS];
-  int player[VS_TEAMS]; // in the list; -1: --blue
-  bool swapped;         // --swap: the measured player is yellow, the pairing before has it as blue
-  vs_match_result *results;
-  vs_series_summary summary;
-} pairing;
-
-typedef struct eval_command {
-  vs_match_flags match;
-  const char *blue, *against, *round_robin, *json, *csv;
-  int matches;
-  bool swap;
-  vs_flag_list name;
-
-  char *names; // the split list
-  const char *player[MAX_PLAYERS];
-  int players;
-  pairing *pairings;
-  int count, current; // pairings, the one being played
-  vs_match_result *results;
-  int done; // matches of all pairings
-  vs_progress progress;
-} eval_command;
 
 // "random:,inf:" -> player[]. A comma inside a URI cannot be written.
 static vs_status split(eval_command *c, const char *flag, const char *list, int least, vs_error *err) {
@@ -44,26 +14,20 @@ static vs_status split(eval_command *c, const char *flag, const char *list, int 
   char *rest = c->names;
   for (char *one; (one = strsep(&rest, ",")) != NULL;) {
     if (!*one) return vs_fail(err, VS_USAGE, "--%s %s: an empty name; write URI,URI,...", flag, list);
-    if (c->players == MAX_PLAYERS) return vs_fail(err, VS_USAGE, "--%s: more than %d players", flag, MAX_PLAYERS);
+    if (c->players == EVAL_MAX_PLAYERS)
+      return vs_fail(err, VS_USAGE, "--%s: more than %d players", flag, EVAL_MAX_PLAYERS);
     c->player[c->players++] = one;
   }
   if (c->players < least) return vs_fail(err, VS_USAGE, "--%s %s: at least %d players", flag, list, least);
   return VS_OK;
 }
 
-// What a player is called: by --name, in the order of --blue (if it plays) and the list, else its URI.
-static const char *name_of(const eval_command *c, int player) {
-  int at = c->round_robin ? player : player + 1;
-  if (at < c->name.count) return c->name.value[at];
-  return player < 0 ? c->blue : c->player[player];
-}
-
 static void add_pairing(eval_command *c, int blue, int yellow) {
   c->pairings[c->count] =
-      (pairing){.uri = {blue < 0 ? c->blue : c->player[blue], yellow < 0 ? c->blue : c->player[yellow]},
-                .player = {blue, yellow},
-                .swapped = !c->round_robin && yellow < 0,
-                .results = c->results + (size_t)c->count * (size_t)c->matches};
+      (eval_pairing){.uri = {blue < 0 ? c->blue : c->player[blue], yellow < 0 ? c->blue : c->player[yellow]},
+                     .player = {blue, yellow},
+                     .swapped = !c->round_robin && yellow < 0,
+                     .results = c->results + (size_t)c->count * (size_t)c->matches};
   c->count++;
 }
 
@@ -90,7 +54,7 @@ static vs_status make_pairings(eval_command *c, vs_error *err) {
 static bool match_done(void *context, int index, const vs_match_result *result) {
   (void)index;
   eval_command *c = context;
-  const pairing *p = &c->pairings[c->current];
+  const eval_pairing *p = &c->pairings[c->current];
   c->done++;
   char text[200];
   snprintf(text, sizeof text, "%d of %d matches  %s %d : %d %s", c->done, c->count * c->matches, p->uri[VS_BLUE],
@@ -100,7 +64,7 @@ static bool match_done(void *context, int index, const vs_match_result *result) 
 }
 
 // Both colours as one row: matches as yellow seen from the other side.
-static vs_status sum_both(const eval_command *c, const pairing *p, vs_series_summary *out, vs_error *err) {
+static vs_status sum_both(const eval_command *c, const eval_pairing *p, vs_series_summary *out, vs_error *err) {
   size_t n = (size_t)c->matches;
   vs_match_result *both = calloc(2 * n, sizeof *both);
   if (!both) return vs_fail(err, VS_FAIL, "out of memory for %d matches", c->matches);
@@ -112,17 +76,17 @@ static vs_status sum_both(const eval_command *c, const pairing *p, vs_series_sum
 }
 
 // The row of an opponent, once all its matches are played.
-static vs_status print_row(const eval_command *c, const pairing *p, vs_error *err) {
+static vs_status print_row(const eval_command *c, const eval_pairing *p, vs_error *err) {
   vs_series_summary row = p->summary;
   if (c->round_robin || (c->swap && !p->swapped)) return VS_OK;
   vs_status s = c->swap ? sum_both(c, p, &row, err) : VS_OK;
   if (s == VS_OK && row.matches > 0)
-    vs_report_table_row(stdout, name_of(c, p->player[p->swapped ? VS_BLUE : VS_YELLOW]), &row);
+    vs_report_table_row(stdout, eval_name(c, p->player[p->swapped ? VS_BLUE : VS_YELLOW]), &row);
   return s;
 }
 
 static vs_status play_pairing(eval_command *c, const vs_env_def *env, vs_error *err) {
-  pairing *p = &c->pairings[c->current];
+  eval_pairing *p = &c->pairings[c->current];
   vs_series_def def = {.env = *env,
                        .matches = c->matches,
                        .threads = c->match.threads,
@@ -154,179 +118,14 @@ static vs_status check_players(const eval_command *c, vs_error *err) {
   return VS_OK;
 }
 
-static void print_knockout(const eval_command *c) {
-  for (int i = 0; i < c->count; i++) {
-    const pairing *p = &c->pairings[i];
-    char both[128];
-    snprintf(both, sizeof both, "%s against %s", name_of(c, p->player[VS_BLUE]), name_of(c, p->player[VS_YELLOW]));
-    vs_report_knockout(stdout, both, &p->summary);
-  }
-}
-
-static void print_restarts(const eval_command *c) {
-  printf("\n");
-  vs_report_restarts_head(stdout);
-  for (int i = 0; i < c->count; i++)
-    if (c->pairings[i].summary.matches > 0)
-      vs_report_restarts_row(stdout, name_of(c, c->pairings[i].player[c->pairings[i].swapped ? VS_BLUE : VS_YELLOW]),
-                             &c->pairings[i].summary);
-}
-
-// Each player that broke the idle rule is told so once, over all its matches.
-static void print_idle(const eval_command *c) {
-  for (int k = -1; k < c->players; k++) {
-    const char *uri = k < 0 ? c->blue : c->player[k];
-    double warnings = 0, sent_off = 0;
-    int matches = 0;
-    if (k < 0 && c->round_robin) continue;
-    for (int i = 0; i < c->count; i++)
-      for (int t = 0; t < VS_TEAMS; t++) {
-        const pairing *p = &c->pairings[i];
-        if (strcmp(p->uri[t], uri) != 0 || p->summary.matches == 0) continue;
-        warnings += p->summary.idle_warnings[t] * p->summary.matches;
-        sent_off += p->summary.idle_sent_off[t] * p->summary.matches;
-        matches += p->summary.matches;
-      }
-    bool told = k >= 0 && !c->round_robin && !strcmp(uri, c->blue);
-    if (matches > 0 && !told) vs_report_idle(stdout, uri, warnings / matches, sent_off / matches);
-  }
-}
-
-// Elo of the players from all matches played, and how far the 95 % interval reaches to either side. MAX_PLAYERS doubles.
-static void rate(const eval_command *c, double *rating, double *reach) {
-  double points[MAX_PLAYERS * MAX_PLAYERS] = {0};
-  int games[MAX_PLAYERS * MAX_PLAYERS] = {0};
-  for (int k = 0; k < c->count; k++) {
-    const pairing *p = &c->pairings[k];
-    if (p->summary.matches == 0) continue;
-    int blue = p->player[VS_BLUE] * c->players + p->player[VS_YELLOW];
-    int yellow = p->player[VS_YELLOW] * c->players + p->player[VS_BLUE];
-    double won = (p->summary.win.mean + 0.5 * p->summary.draw.mean) * p->summary.matches;
-    points[blue] += won;
-    points[yellow] += p->summary.matches - won;
-    games[blue] += p->summary.matches;
-    games[yellow] += p->summary.matches;
-  }
-  vs_elo(c->players, points, games, rating);
-  if (vs_elo_deviations(c->players, games, rating, reach, NULL) != VS_OK)
-    for (int i = 0; i < c->players; i++) reach[i] = NAN;
-  for (int i = 0; i < c->players; i++) reach[i] *= 1.96;
-}
-
-static const pairing *find_pairing(const eval_command *c, int blue, int yellow) {
-  for (int k = 0; k < c->count; k++)
-    if (c->pairings[k].player[VS_BLUE] == blue && c->pairings[k].player[VS_YELLOW] == yellow) return &c->pairings[k];
-  return NULL;
-}
-
-static void print_cross_table(const eval_command *c) {
-  double rating[MAX_PLAYERS], reach[MAX_PLAYERS];
-  rate(c, rating, reach);
-  printf("win/draw/loss %% and score of the row as blue against the column as yellow; Elo with its 95 %% "
-         "interval\n\n%-16s",
-         "");
-  for (int j = 0; j < c->players; j++) {
-    printf("  ");
-    vs_report_name(stdout, name_of(c, j), 18);
-  }
-  printf("  %12s\n", "Elo");
-  for (int i = 0; i < c->players; i++) {
-    vs_report_name(stdout, name_of(c, i), 16);
-    for (int j = 0; j < c->players; j++) {
-      const pairing *p = find_pairing(c, i, j);
-      char cell[64] = "";
-      if (p && p->summary.matches > 0)
-        snprintf(cell, sizeof cell, "%.0f/%.0f/%.0f %+.2f", 100 * p->summary.win.mean, 100 * p->summary.draw.mean,
-                 100 * p->summary.loss.mean, p->summary.score.mean);
-      printf("  %-18s", cell);
-    }
-    printf("  %6.0f +-%4.0f\n", rating[i], reach[i]);
-  }
-}
-
 static vs_status open_output(const char *path, FILE **out, vs_error *err) {
   *out = fopen(path, "w");
   if (*out) return VS_OK;
   return vs_fail(err, VS_FAIL, "%s: cannot be written: %s", path, strerror(errno));
 }
 
-static vs_status close_output(FILE *out, const char *path, vs_error *err) {
-  bool bad = ferror(out) != 0;
-  if (fclose(out) != 0) bad = true;
-  return bad ? vs_fail(err, VS_FAIL, "%s: cannot be written: %s", path, strerror(errno)) : VS_OK;
-}
-
-static vs_status write_csv(const eval_command *c, FILE *out, vs_error *err) {
-  vs_report_csv_head(out);
-  for (int i = 0; i < c->count; i++)
-    if (c->pairings[i].summary.matches > 0)
-      vs_report_csv_row(out, c->pairings[i].uri[VS_BLUE], c->pairings[i].uri[VS_YELLOW], &c->pairings[i].summary);
-  return close_output(out, c->csv, err);
-}
-
-static void write_ratings(const eval_command *c, FILE *out) {
-  double rating[MAX_PLAYERS], reach[MAX_PLAYERS];
-  rate(c, rating, reach);
-  fprintf(out, "\"elo\": {");
-  for (int i = 0; i < c->players; i++) {
-    fprintf(out, "%s", i ? ", " : "");
-    vs_json_put(out, c->player[i]);
-    fprintf(out, ": %.2f", rating[i]);
-  }
-  fprintf(out, "},\n\"elo_interval\": {");
-  for (int i = 0; i < c->players; i++) {
-    fprintf(out, "%s", i ? ", " : "");
-    vs_json_put(out, c->player[i]);
-    if (isfinite(reach[i]))
-      fprintf(out, ": [%.2f, %.2f]", rating[i] - reach[i], rating[i] + reach[i]);
-    else
-      fprintf(out, ": null");
-  }
-  fprintf(out, "},\n");
-}
-
-static vs_status write_json(const eval_command *c, FILE *out, vs_error *err) {
-  fprintf(out, "{\"command\": \"eval\", ");
-  vs_report_json_flags(out, &c->match);
-  fprintf(out, ", \"complete\": %s,\n", c->done == c->count * c->matches ? "true" : "false");
-  if (c->round_robin) write_ratings(c, out);
-  fprintf(out, "\"series\": [");
-  const char *separator = "";
-  for (int i = 0; i < c->count; i++) {
-    const pairing *p = &c->pairings[i];
-    if (p->summary.matches == 0) continue;
-    fprintf(out, "%s\n{\"blue\": ", separator);
-    vs_json_put(out, p->uri[VS_BLUE]);
-    fprintf(out, ", \"yellow\": ");
-    vs_json_put(out, p->uri[VS_YELLOW]);
-    fprintf(out, ",\n \"summary\": ");
-    vs_report_json_summary(out, &p->summary);
-    fprintf(out, ",\n \"matches\": ");
-    vs_report_json_matches(out, p->results, c->matches);
-    fprintf(out, "}");
-    separator = ",";
-  }
-  fprintf(out, "]}\n");
-  return close_output(out, c->json, err);
-}
-
-static void print_head(const eval_command *c) {
-  char about[160];
-  vs_match_flags_describe(&c->match, about, sizeof about);
-  if (c->round_robin)
-    printf("round robin of %d players, %d matches as blue and as yellow in each pairing: %s\n", c->players, c->matches,
-           about);
-  else
-    printf("%s as blue, %d matches against each%s: %s\n", name_of(c, -1), c->matches, c->swap ? ", and as yellow" : "",
-           about);
-  printf("blue attacks +x and kicks off first; %s; 10 goals ahead ends a match\n\n",
-         c->round_robin || c->swap ? "both colours are played" : "colours are not swapped (--swap)");
-  if (!c->round_robin) vs_report_table_head(stdout);
-  fflush(stdout);
-}
-
 static vs_status evaluate(eval_command *c, const vs_env_def *env, FILE *json, FILE *csv, vs_error *err) {
-  print_head(c);
+  eval_print_head(c);
   int64_t start_us = vs_clock_monotonic_us();
   vs_progress_start(&c->progress);
   vs_status played = VS_OK;
@@ -334,18 +133,15 @@ static vs_status evaluate(eval_command *c, const vs_env_def *env, FILE *json, FI
     played = play_pairing(c, env, err);
   vs_progress_clear(&c->progress);
 
-  c->round_robin ? print_cross_table(c) : print_restarts(c);
-  printf("\n");
-  print_knockout(c);
-  print_idle(c);
+  eval_print_tables(c);
   if (c->done < c->count * c->matches) printf("\nstopped: %d of %d matches\n", c->done, c->count * c->matches);
   double played_s = 0.0, wall_s = (double)(vs_clock_monotonic_us() - start_us) * 1e-6;
   for (int i = 0; i < c->count; i++) played_s += c->pairings[i].summary.mean_time_s * c->pairings[i].summary.matches;
   printf("\n%.0f s played in %.1f s (%.0f times real time)\n", played_s, wall_s, played_s / wall_s);
   vs_status s = VS_OK;
-  if (json) s = write_json(c, json, err);
+  if (json) s = eval_write_json(c, json, err);
   if (csv) {
-    vs_status t = write_csv(c, csv, err);
+    vs_status t = eval_write_csv(c, csv, err);
     if (s == VS_OK) s = t;
   }
   return played != VS_OK ? played : s;
