@@ -1,9 +1,14 @@
 // Tests src/policy/policy_onnx.c with files of src/learn/onnx_writer.c: ONNX Runtime against a plain C network, and
 // every way in which a file can be wrong.
+#include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+#if __has_include(<onnxruntime_c_api.h>)
+#include <onnxruntime_c_api.h>
+#endif
 
 #include "assert_near.h"
 #include "learn/export.h"
@@ -25,7 +30,7 @@ static void make_net(vs_net *net, float **parameters) {
 }
 
 // The oracle: the same network in double, one value at a time, straight from the definition in net.h.
-static void plain_forward(const vs_net *net, const float *p, const float *x, double action[2]) {
+static void plain_beta(const vs_net *net, const float *p, const float *x, double alpha[2], double beta[2]) {
   double h0[W0], h1[W1], raw[ACTOR_OUTPUTS];
   for (int j = 0; j < W0; j++) {
     double sum = p[net->bias[0] + (size_t)j];
@@ -41,10 +46,13 @@ static void plain_forward(const vs_net *net, const float *p, const float *x, dou
     raw[j] = p[net->head_bias[VS_ACTOR] + (size_t)j];
     for (int i = 0; i < W1; i++) raw[j] += h1[i] * p[net->head_weight[VS_ACTOR] + (size_t)(j * W1 + i)];
   }
-  for (int k = 0; k < 2; k++) {
-    double alpha = 1.0 + log1p(exp(raw[k])), beta = 1.0 + log1p(exp(raw[2 + k]));
-    action[k] = 2.0 * alpha / (alpha + beta) - 1.0;
-  }
+  for (int k = 0; k < 2; k++) alpha[k] = 1.0 + log1p(exp(raw[k])), beta[k] = 1.0 + log1p(exp(raw[2 + k]));
+}
+
+static void plain_forward(const vs_net *net, const float *p, const float *x, double action[2]) {
+  double alpha[2], beta[2];
+  plain_beta(net, p, x, alpha, beta);
+  for (int k = 0; k < 2; k++) action[k] = 2.0 * alpha[k] / (alpha[k] + beta[k]) - 1.0;
 }
 
 static char folder[] = "build/onnx_test_XXXXXX";
@@ -222,6 +230,91 @@ static void a_reversible_policy_agrees_with_plain_c_whichever_way_the_robot_face
   free(parameters);
 }
 
+#ifdef ORT_API_VERSION
+// Runs the model in file[] as another program would, which is how alpha and beta are read: float[rows][2] each.
+static void run_elsewhere(float *obs, int64_t rows, float *alpha, float *beta) {
+  vs_player *player = NULL;
+  assert_ok(open_file(&player, err)); // loads the library
+  void *library = dlopen("libonnxruntime.so.1", RTLD_NOW | RTLD_NOLOAD);
+  if (!library) library = dlopen("libonnxruntime.so.1.21", RTLD_NOW | RTLD_NOLOAD);
+  assert_non_null(library);
+  const OrtApiBase *(*base)(void) = (const OrtApiBase *(*)(void))dlsym(library, "OrtGetApiBase");
+  const OrtApi *ort = base()->GetApi(20);
+  OrtEnv *env;
+  OrtSessionOptions *options;
+  OrtSession *session;
+  OrtMemoryInfo *memory;
+  OrtValue *input, *output[2];
+  const int64_t in[2] = {rows, VS_OBS_SIZE}, out[2] = {rows, 2};
+  const size_t out_bytes = (size_t)rows * 2 * sizeof(float);
+  assert_null(ort->CreateEnv(ORT_LOGGING_LEVEL_ERROR, "test", &env));
+  assert_null(ort->CreateSessionOptions(&options));
+  assert_null(ort->CreateSession(env, file, options, &session));
+  assert_null(ort->CreateCpuMemoryInfo(OrtArenaAllocator, OrtMemTypeDefault, &memory));
+  const ONNXTensorElementDataType type = ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT;
+  assert_null(
+      ort->CreateTensorWithDataAsOrtValue(memory, obs, (size_t)rows * VS_OBS_SIZE * sizeof *obs, in, 2, type, &input));
+  assert_null(ort->CreateTensorWithDataAsOrtValue(memory, alpha, out_bytes, out, 2, type, &output[0]));
+  assert_null(ort->CreateTensorWithDataAsOrtValue(memory, beta, out_bytes, out, 2, type, &output[1]));
+  const char *const inputs[] = {"observation"}, *const outputs[] = {"alpha", "beta"};
+  assert_null(ort->Run(session, NULL, inputs, (const OrtValue *const *)&input, 1, outputs, 2, output));
+  for (int i = 0; i < 2; i++) ort->ReleaseValue(output[i]);
+  ort->ReleaseValue(input);
+  ort->ReleaseMemoryInfo(memory);
+  ort->ReleaseSession(session);
+  ort->ReleaseSessionOptions(options);
+  ort->ReleaseEnv(env);
+  dlclose(library);
+  vs_player_close(player);
+}
+#else
+static void run_elsewhere(float *obs, int64_t rows, float *alpha, float *beta) {
+  (void)obs, (void)rows, (void)alpha, (void)beta;
+  skip();
+}
+#endif
+
+// The distributions of a reversible file are those of the wheels as the contract numbers them: seen by the other end, the
+// wheels change places and forward becomes back, which is alpha for beta. Averaged, each is the mean over the versions.
+static void alpha_and_beta_are_of_the_robots_own_wheels(void **state) {
+  (void)state;
+  enum { N = 40 };
+  vs_net net;
+  float *parameters, *obs = malloc(N * VS_OBS_SIZE * sizeof *obs), alpha[N][2], beta[N][2];
+  vs_symmetry_table table;
+  vs_rng rng = vs_rng_make(12, 0);
+  make_net(&net, &parameters);
+  vs_symmetry_table_init(&table);
+  for (int i = 0; i < N * VS_OBS_SIZE; i++) obs[i] = (float)vs_rng_range(&rng, -1.0, 1.0);
+  for (int average = 0; average < 2; average++) {
+    write_model_with(&net, parameters, (vs_policy_io){.reversible = true, .average = average != 0, .action_gain = 1.0});
+    run_elsewhere(obs, N, &alpha[0][0], &beta[0][0]);
+    int versions = average ? VS_SYMMETRIES : 1, backs = 0;
+    for (int i = 0; i < N; i++) {
+      float end[VS_OBS_SIZE], shown[VS_OBS_SIZE];
+      double sum[2][2] = {{0}}, seen[2][2]; // alpha and beta of both wheels
+      int back = vs_observation_faces_back(obs + i * VS_OBS_SIZE);
+      memcpy(end, obs + i * VS_OBS_SIZE, sizeof end);
+      if (back) vs_observation_reverse(obs + i * VS_OBS_SIZE, end);
+      backs += back;
+      for (int v = 0; v < versions; v++) {
+        vs_symmetry_apply(&table, v, end, shown);
+        plain_beta(&net, parameters, shown, seen[0], seen[1]);
+        for (int k = 0; k < 2; k++)
+          for (int which = 0; which < 2; which++)
+            sum[which][k] += seen[which][vs_symmetry_mirrored(v) ? 1 - k : k] / versions;
+      }
+      for (int k = 0; k < 2; k++) {
+        assert_near(alpha[i][k], back ? sum[1][1 - k] : sum[0][k], 2e-5);
+        assert_near(beta[i][k], back ? sum[0][1 - k] : sum[1][k], 2e-5);
+      }
+    }
+    assert_in_range(backs, N / 4, 3 * N / 4);
+  }
+  free(obs);
+  free(parameters);
+}
+
 static void expect_refusal(const char *why) {
   vs_player *player = NULL;
   vs_error err = {0};
@@ -368,6 +461,7 @@ int main(void) {
       cmocka_unit_test(onnx_runtime_agrees_with_plain_c_on_1000_observations),
       cmocka_unit_test(a_canonical_amplified_policy_agrees_with_plain_c),
       cmocka_unit_test(a_reversible_policy_agrees_with_plain_c_whichever_way_the_robot_faces),
+      cmocka_unit_test(alpha_and_beta_are_of_the_robots_own_wheels),
       cmocka_unit_test(an_averaging_policy_agrees_with_plain_c_and_is_symmetric),
       cmocka_unit_test(a_truncated_file_is_refused_at_every_length),
       cmocka_unit_test(a_model_of_another_contract_is_refused),
