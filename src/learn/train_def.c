@@ -17,25 +17,28 @@
 
 // What was found to help (deploy/docs/strength.md): 20 million transitions of kick-offs at a high learning rate, then
 // start states, a shorter still clock and small steps, without which a run loses to strangers what it wins against itself.
-// The other levers (realism, canonical observations, a gain in training) are off.
+// Half of the opponents are earlier selves that drive slower, faster or less at random than they learnt to, since those
+// that play alike stop each other's every penalty. The other levers (realism, canonical observations) are off.
 vs_train_def vs_train_def_default(void) {
   return (vs_train_def){
       .drive = "planar",
-      .placement = "random",
+      .placement = "mixed",
       .predicts = "learned",
       .episode_s = 40.0,
       .still_distance_m = VS_STILL_DISTANCE_M,
       .still_low_s = 2.0,
       .still_high_s = VS_STILL_S,
-      .start_open = 0.3,
-      .start_penalty = 0.05,
-      .start_free_ball = 0.1,
+      .start_open = 0.2,
+      .start_penalty = 0.25,
+      .start_free_ball = 0.25,
       .start_from_m = 20.0,
       .envs = 96,
       .steps = 32,
       .threads = 2,
       .seed = 1,
-      .opponent = "self=0.6,pool=0.4",
+      .opponent = "self=0.5,pool=0.5",
+      .opponent_gain_high = 1.7, // what policy files drive at
+      .opponent_mean = 0.5,
       .replace_score = 0.6,
       .pool_size = 16,
       .pool_every = 20,
@@ -62,9 +65,9 @@ vs_train_def vs_train_def_default(void) {
       .microbatches = 4,
       .reversible = true,
       .canonical = false,
-      .action_gain = 1.0,
+      .action_gain = 1.4,
       .export_average = true,
-      .export_gain = 2.0,
+      .export_gain = 1.7,
       .export_horizon_m = 5.0,
       .hidden = "256,256",
       .initial_concentration = 4.0,
@@ -78,6 +81,7 @@ vs_train_def vs_train_def_default(void) {
 // falls in a straight line.
 static void without_levers(vs_train_def *def) {
   def->realism[0] = '\0';
+  snprintf(def->placement, sizeof def->placement, "random");
   def->still_distance_m = VS_STILL_DISTANCE_M;
   def->still_low_s = def->still_high_s = VS_STILL_S;
   def->start_open = def->start_penalty = def->start_free_ball = def->start_from_m = 0.0;

@@ -111,7 +111,7 @@ static void a_robot_that_faces_back_is_driven_by_its_other_end(void **state) {
   (void)state;
   vs_train *t = open_tiny("self", 7);
   vs_rollout *r = &t->rollout;
-  r->def.io = (vs_policy_io){.reversible = true, .canonical = true, .action_gain = 1.0};
+  r->def.io = (vs_policy_io){.reversible = true, .canonical = true, .action_gain = t->def.action_gain};
   assert_ok(t->matches.reset(t->matches.self, &r->io, err));
   for (int row = 0; row < r->rows; row++) {
     float *newest = r->io.observation + (row + 1) * VS_OBS_SIZE - VS_OBS_FRAME;
@@ -155,7 +155,7 @@ static void opponents_drive_at_gains_drawn_for_each_episode(void **state) {
   float plain[ROWS][2], before[ROWS][2], now[ROWS][2];
   int alike = 0, apart = 0, row_count = 0;
   double low = 9, high = 0, sum = 0;
-  r->def.opponent = (vs_opponent_style){.mean = 1.0};
+  r->def.opponent = (vs_opponent_style){.gain_low = 1.0, .gain_high = 1.0, .mean = 1.0};
   opponents_act(t, 0, plain);
   for (int episode = 0; episode < EPISODES; episode++) {
     r->def.opponent = (vs_opponent_style){.gain_low = 0.25, .gain_high = 0.75, .mean = 1.0};
