@@ -39,7 +39,7 @@ static int lines(const char *of) {
   return count;
 }
 
-// 4 matches, half of them (0.6 of 4 is 2, 0.4 is 2) with both sides learning: 18 rows x 16 steps = 288 transitions.
+// 4 matches, half of them with both sides learning: 18 rows x 16 steps = 288 transitions.
 static void a_run_leaves_checkpoint_policy_tables_and_continues(void **state) {
   (void)state;
   train("train --run %s/a " SMALL "--transitions 0.001");

@@ -10,7 +10,7 @@
 
 #define SETTINGS                                                                                                       \
   "--set precision=fp32 --set envs=6 --set steps=16 --set minibatch=128 --set hidden=32,32 --set pool_every=3 "        \
-  "--threads 1 "
+  "--set opponent=self=0.6,pool=0.4 --threads 1 "
 // 6 matches, 4 with both sides learning: 30 rows x 16 steps = 480 transitions an update, so 60 updates.
 #define RUN SETTINGS "--transitions 0.0288 --checkpoint-every 0.001 "
 
