@@ -142,7 +142,7 @@ static void mark_the_paper(FILE *script, const points *p, int opponent) {
   fprintf(script, "unset arrow\nunset label\n");
   for (int i = 0; i < VS_PLOT_PAPER_CROSSINGS; i++)
     if (!strcmp(p->opponent[opponent], vs_plot_paper[i].opponent) && most_m >= vs_plot_paper[i].transitions_m)
-      vs_plot_mark_crossing(script, &vs_plot_paper[i], "graph 1.04 center");
+      vs_plot_mark_crossing(script, &vs_plot_paper[i], "graph 0.3 rotate by 90 offset 0.7,0");
 }
 
 // value: 2 is what was won, 3 the score.
