@@ -96,13 +96,13 @@ vs_status calibrate_lens(const calibrate_request *r, vs_error *err) {
   return s;
 }
 
-vs_status calibrate_begin(const calibrate_request *r, vs_calib *c, char name[96], vs_error *err) {
-  name[0] = '\0';
+static vs_status begin(const calibrate_request *r, calibrate_measured *m, vs_error *err) {
+  vs_calib *c = &m->calib;
   if (r->camera) {
     vs_camera *camera;
     vs_status s = calibrate_open_camera(r->camera, false, &camera, err);
     if (s != VS_OK) return s;
-    snprintf(name, 96, "%s", vs_camera_about(camera)->name);
+    snprintf(m->camera, sizeof m->camera, "%s", vs_camera_about(camera)->name);
     c->width = vs_camera_about(camera)->width, c->height = vs_camera_about(camera)->height;
     vs_camera_close(camera);
   }
@@ -120,31 +120,36 @@ vs_status calibrate_begin(const calibrate_request *r, vs_calib *c, char name[96]
   return VS_OK;
 }
 
-void calibrate_print_points(const vs_calib *c, const vs_calib_point *points, int count) {
+vs_status calibrate_read(const calibrate_request *r, calibrate_measured *out, vs_error *err) {
+  *out = (calibrate_measured){0};
+  vs_status s = vs_calib_load_points(r->points, out->point, CALIBRATE_MOST_POINTS, &out->count, err);
+  return s == VS_OK ? begin(r, out, err) : s;
+}
+
+void calibrate_print_points(const calibrate_measured *m) {
   printf("%9s %9s   %7s %7s %6s   %8s\n", "x px", "y px", "x m", "y m", "z m", "error mm");
-  for (int i = 0; i < count; i++)
-    printf("%9.2f %9.2f   %7.3f %7.3f %6.3f   %8.2f\n", points[i].x_px, points[i].y_px, points[i].x_m, points[i].y_m,
-           points[i].z_m, vs_calib_error_mm(c, &points[i]));
+  for (int i = 0; i < m->count; i++) {
+    const vs_calib_point *p = &m->point[i];
+    printf("%9.2f %9.2f   %7.3f %7.3f %6.3f   %8.2f\n", p->x_px, p->y_px, p->x_m, p->y_m, p->z_m,
+           vs_calib_error_mm(&m->calib, p));
+  }
 }
 
 vs_status calibrate_points(const calibrate_request *r, vs_error *err) {
-  static vs_calib_point points[CALIBRATE_MOST_POINTS];
-  vs_calib c = {0};
-  char name[96];
-  int count;
-  vs_status s = vs_calib_load_points(r->points, points, CALIBRATE_MOST_POINTS, &count, err);
-  if (s == VS_OK) s = calibrate_begin(r, &c, name, err);
+  static calibrate_measured m;
+  vs_calib *c = &m.calib;
+  vs_status s = calibrate_read(r, &m, err);
   if (s == VS_OK && !r->calib && r->height_m <= 0)
     s = vs_fail(err, VS_USAGE, "the lens is not known: give --calib FILE (of --checkerboard) or --height-m, by tape");
   if (s == VS_OK)
-    s = r->calib ? vs_calib_solve_pose(&c, points, count, err)
-                 : vs_calib_solve_from_height(&c, points, count, r->height_m, err);
+    s = r->calib ? vs_calib_solve_pose(c, m.point, m.count, err)
+                 : vs_calib_solve_from_height(c, m.point, m.count, r->height_m, err);
   if (s != VS_OK) return s;
   double lens[3];
-  vs_calib_lens(&c, lens);
-  calibrate_print_points(&c, points, count);
-  printf("%d points: error %.2f mm rms, %.2f mm at worst; lens at (%.3f, %.3f), %.3f m over the floor\n", count,
-         c.rms_mm, c.worst_mm, lens[0], lens[1], lens[2]);
-  stamp(&c, name[0] ? name : c.camera[0] ? NULL : "unnamed");
-  return save(&c, r->out, err);
+  vs_calib_lens(c, lens);
+  calibrate_print_points(&m);
+  printf("%d points: error %.2f mm rms, %.2f mm at worst; lens at (%.3f, %.3f), %.3f m over the floor\n", m.count,
+         c->rms_mm, c->worst_mm, lens[0], lens[1], lens[2]);
+  stamp(c, m.camera[0] ? m.camera : c->camera[0] ? NULL : "unnamed");
+  return save(c, r->out, err);
 }

@@ -29,8 +29,15 @@ vs_status calibrate_check_field(const calibrate_request *r, vs_error *err);
 vs_status calibrate_open_camera(const char *source, bool every_frame, vs_camera **camera, vs_error *err);
 // A picture worth learning from: a device's first ones are of its old exposure. It stays the camera's.
 vs_status calibrate_settled_picture(const char *source, vs_camera **camera, vs_frame *frame, vs_error *err);
-// r->calib, or an empty calibration of the picture's size: from --calib, --size or the camera, whose name it tells.
-vs_status calibrate_begin(const calibrate_request *r, vs_calib *c, char name[96], vs_error *err);
-void calibrate_print_points(const vs_calib *c, const vs_calib_point *points, int count);
+// The points of r->points, and what is known before they are used: r->calib, or an empty calibration of the picture's
+// size, which --size or the camera tells.
+typedef struct calibrate_measured {
+  vs_calib calib;
+  vs_calib_point point[CALIBRATE_MOST_POINTS];
+  int count;
+  char camera[96]; // its name; empty: none was given
+} calibrate_measured;
+vs_status calibrate_read(const calibrate_request *r, calibrate_measured *out, vs_error *err);
+void calibrate_print_points(const calibrate_measured *m);
 
 #endif

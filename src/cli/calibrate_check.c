@@ -7,27 +7,26 @@
 #include "vsss/geom.h"
 #include "vsss/detect.h"
 
+static vs_status judge(const calibrate_request *r, double worst_mm, vs_error *err) {
+  if (worst_mm <= r->tolerance_mm) return VS_OK;
+  return vs_fail(err, VS_FAIL, "%s: %.1f mm at worst, %.1f are allowed: calibrate anew", r->calib, worst_mm,
+                 r->tolerance_mm);
+}
+
 vs_status calibrate_check_points(const calibrate_request *r, vs_error *err) {
-  static vs_calib_point points[CALIBRATE_MOST_POINTS];
-  vs_calib c = {0};
-  char name[96];
-  int count;
-  vs_status s = vs_calib_load_points(r->points, points, CALIBRATE_MOST_POINTS, &count, err);
-  if (s == VS_OK) s = calibrate_begin(r, &c, name, err);
+  static calibrate_measured m;
+  vs_status s = calibrate_read(r, &m, err);
   if (s != VS_OK) return s;
-  if (count == 0) return vs_fail(err, VS_FAIL, "%s: holds no points", r->points);
+  if (m.count == 0) return vs_fail(err, VS_FAIL, "%s: holds no points", r->points);
   double sum = 0, worst = 0;
-  for (int i = 0; i < count; i++) {
-    double e = vs_calib_error_mm(&c, &points[i]);
-    sum += e * e / count;
+  for (int i = 0; i < m.count; i++) {
+    double e = vs_calib_error_mm(&m.calib, &m.point[i]);
+    sum += e * e / m.count;
     worst = fmax(worst, e);
   }
-  calibrate_print_points(&c, points, count);
-  printf("%d points: error %.2f mm rms, %.2f mm at worst\n", count, sqrt(sum), worst);
-  if (!(worst <= r->tolerance_mm))
-    return vs_fail(err, VS_FAIL, "%s: %.1f mm at worst, %.1f are allowed: calibrate anew", r->calib, worst,
-                   r->tolerance_mm);
-  return VS_OK;
+  calibrate_print_points(&m);
+  printf("%d points: error %.2f mm rms, %.2f mm at worst\n", m.count, sqrt(sum), worst);
+  return judge(r, worst, err);
 }
 
 // By the field's own lines, or its walls.
@@ -123,8 +122,5 @@ vs_status calibrate_check_tags(const calibrate_request *r, vs_error *err) {
     printf("%4d   %7.3f %7.3f   %7.3f %7.3f   %8.2f  %d\n", m->id, m->x_m, m->y_m, x, y, e, m->seen);
     worst = fmax(worst, e);
   }
-  if (!(worst <= r->tolerance_mm))
-    return vs_fail(err, VS_FAIL, "%s: %.1f mm at worst, %.1f are allowed: calibrate anew", r->calib, worst,
-                   r->tolerance_mm);
-  return VS_OK;
+  return judge(r, worst, err);
 }
