@@ -124,6 +124,12 @@ static vs_status open_output(const char *path, FILE **out, vs_error *err) {
   return vs_fail(err, VS_FAIL, "%s: cannot be written: %s", path, strerror(errno));
 }
 
+static vs_status close_output(FILE *out, const char *path, vs_error *err) {
+  bool bad = ferror(out) != 0;
+  if (fclose(out) != 0) bad = true;
+  return bad ? vs_fail(err, VS_FAIL, "%s: cannot be written: %s", path, strerror(errno)) : VS_OK;
+}
+
 static vs_status evaluate(eval_command *c, const vs_env_def *env, FILE *json, FILE *csv, vs_error *err) {
   eval_print_head(c);
   int64_t start_us = vs_clock_monotonic_us();
@@ -139,9 +145,13 @@ static vs_status evaluate(eval_command *c, const vs_env_def *env, FILE *json, FI
   for (int i = 0; i < c->count; i++) played_s += c->pairings[i].summary.mean_time_s * c->pairings[i].summary.matches;
   printf("\n%.0f s played in %.1f s (%.0f times real time)\n", played_s, wall_s, played_s / wall_s);
   vs_status s = VS_OK;
-  if (json) s = eval_write_json(c, json, err);
+  if (json) {
+    eval_write_json(c, json);
+    s = close_output(json, c->json, err);
+  }
   if (csv) {
-    vs_status t = eval_write_csv(c, csv, err);
+    eval_write_csv(c, csv);
+    vs_status t = close_output(csv, c->csv, err);
     if (s == VS_OK) s = t;
   }
   return played != VS_OK ? played : s;

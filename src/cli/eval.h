@@ -39,8 +39,7 @@ void eval_print_head(const eval_command *c);
 // What stands below the rows (of a round robin, the table whole) once all is played or stopped.
 void eval_print_tables(const eval_command *c);
 
-// Both close the file. VS_FAIL: not all could be written to c->csv, c->json.
-vs_status eval_write_csv(const eval_command *c, FILE *out, vs_error *err);
-vs_status eval_write_json(const eval_command *c, FILE *out, vs_error *err);
+void eval_write_csv(const eval_command *c, FILE *out);
+void eval_write_json(const eval_command *c, FILE *out);
 
 #endif

@@ -1,5 +1,4 @@
 // Tables of `vsss eval`, on screen and as CSV and JSON.
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -125,18 +124,11 @@ void eval_print_tables(const eval_command *c) {
   print_idle(c);
 }
 
-static vs_status close_output(FILE *out, const char *path, vs_error *err) {
-  bool bad = ferror(out) != 0;
-  if (fclose(out) != 0) bad = true;
-  return bad ? vs_fail(err, VS_FAIL, "%s: cannot be written: %s", path, strerror(errno)) : VS_OK;
-}
-
-vs_status eval_write_csv(const eval_command *c, FILE *out, vs_error *err) {
+void eval_write_csv(const eval_command *c, FILE *out) {
   vs_report_csv_head(out);
   for (int i = 0; i < c->count; i++)
     if (c->pairings[i].summary.matches > 0)
       vs_report_csv_row(out, c->pairings[i].uri[VS_BLUE], c->pairings[i].uri[VS_YELLOW], &c->pairings[i].summary);
-  return close_output(out, c->csv, err);
 }
 
 static void write_ratings(const eval_command *c, FILE *out) {
@@ -160,7 +152,7 @@ static void write_ratings(const eval_command *c, FILE *out) {
   fprintf(out, "},\n");
 }
 
-vs_status eval_write_json(const eval_command *c, FILE *out, vs_error *err) {
+void eval_write_json(const eval_command *c, FILE *out) {
   fprintf(out, "{\"command\": \"eval\", ");
   vs_report_json_flags(out, &c->match);
   fprintf(out, ", \"complete\": %s,\n", c->done == c->count * c->matches ? "true" : "false");
@@ -182,5 +174,4 @@ vs_status eval_write_json(const eval_command *c, FILE *out, vs_error *err) {
     separator = ",";
   }
   fprintf(out, "]}\n");
-  return close_output(out, c->json, err);
 }
